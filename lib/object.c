@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+#include "object.h"
+
+#include "exact.h"
+#include "vec.h"
+
+#include <float.h>
+#include <string.h>
+
+/* 2^e for -1022 <= e <= 1023. */
+static double power_of_two(int e) {
+    uint64_t bits = (uint64_t)(e + 1023) << 52;
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3], double t_min, double t_max,
+                  uint32_t mask) {
+    bool valid = t_min <= t_max;
+    for (int i = 0; i < 3; i++) valid &= fabs(origin[i]) <= RG_COORDINATE_MAX && fabs(direction[i]) <= DBL_MAX;
+    double largest = rgi_max_magnitude(direction);
+    if (!valid || largest == 0) return false;
+    int exponent;
+    frexp(largest, &exponent);
+    exponent -= 1;
+    int half = exponent / 2;
+    ray->to_world = power_of_two(-half);
+    ray->to_world2 = power_of_two(-(exponent - half));
+    double from_world = power_of_two(half), from_world2 = power_of_two(exponent - half);
+    for (int i = 0; i < 3; i++) {
+        ray->origin[i] = origin[i];
+        ray->direction[i] = direction[i] * ray->to_world * ray->to_world2;
+    }
+    ray->t_min = t_min * from_world * from_world2;
+    ray->t_max = t_max * from_world * from_world2;
+    ray->dd = rgi_dot(ray->direction, ray->direction);
+    ray->mask = mask;
+    return true;
+}
+
+/*
+ * Beyond this many radii the ray's origin is first moved along the ray to the point nearest to the object: then what rounding
+ * makes of the test depends on the size of the object, not on its distance. Nearer by, an origin's own bits are best.
+ */
+enum { NEAR = 64 };
+
+/*
+ * Whether a ray passes the ball around the object's position by so much that no rounding matters: the distance squared
+ * has an error of some 2^-50 of `oo`, and the ball gets 2^-8 more radius. *along: where the ray is nearest.
+ */
+static bool passes(const double oc[3], double oo, double reach, const rgi_ray *ray, double *along) {
+    double b = rgi_dot(oc, ray->direction);
+    *along = -(b / ray->dd);
+    return oo + b * *along > reach * reach * (1 + 0x1p-8) + oo * 0x1p-40;
+}
+
+bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, rgi_local_ray *local,
+                          rgi_candidate *candidate) {
+    double oc[3], along;
+    rgi_sub(ray->origin, object->position, oc);
+    double oo = rgi_dot(oc, oc);
+    if (passes(oc, oo, object->reach, ray, &along)) return false;
+    local->shift = 0;
+    if (oo > (double)(NEAR * NEAR) * object->reach * object->reach) {
+        local->shift = along;
+        rgi_rebase3(ray->origin, object->position, along, ray->direction, oc);
+    }
+    if (linear) {
+        rgi_transform(linear->inverse, oc, local->origin);
+        rgi_transform(linear->inverse, ray->direction, local->direction);
+    } else {
+        rgi_copy(oc, local->origin);
+        rgi_copy(ray->direction, local->direction);
+    }
+    return rgi_shape_intersect(object->shape, local, candidate);
+}

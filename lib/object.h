@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+/* Objects: shapes in their places, and where a world ray meets one. */
+#ifndef RAYGRID_LIB_OBJECT_H
+#define RAYGRID_LIB_OBJECT_H
+
+#include "intersect.h"
+#include "pose.h"
+#include "shape.h"
+#include "slots.h"
+
+#include <raygrid/scene.h>
+
+/** A slot for an object. While it is free, shape is NULL and generation that of its next use. */
+typedef struct rgi_object {
+    uint32_t link; /* of the list of free slots */
+    uint32_t generation;
+    rg_shape *shape;
+    double position[3];
+    double reach;    /* the object is within this distance of its position; may be infinite */
+    uint32_t linear; /* record of its linear part, or RGI_NONE for the identity */
+    uint32_t mask;
+    uint32_t grid;   /* index of its grid */
+    uint32_t member; /* its record there */
+} rgi_object;
+
+/**
+ * A ray as traces use it: the direction scaled by 2^-exponent so that its largest component is in [1, 2), and t_min and
+ * t_max by 2^exponent. Scaling by powers of two rounds nothing, and no product below over- or underflows.
+ */
+typedef struct rgi_ray {
+    double origin[3];
+    double direction[3];
+    double t_min, t_max;
+    double dd;       /* direction squared */
+    double to_world; /* what a t found is multiplied by twice: 2^(-exponent / 2), in two steps of like size */
+    double to_world2;
+    uint32_t mask;
+} rgi_ray;
+
+/** Fills *ray; false if it is invalid (raygrid/trace.h says when). */
+bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3], double t_min, double t_max,
+                  uint32_t mask);
+
+/** A t of rgi_ray in units of the direction that the caller gave. */
+static inline double rgi_world_t(const rgi_ray *ray, double t) { return t * ray->to_world * ray->to_world2; }
+
+/**
+ * Where the ray meets the object. The caller has filled t_min, t_max, sides, any, accept and context of `local`; the rest
+ * is set here. `linear`: the object's linear part or NULL. The answer depends on the ray and the object alone.
+ */
+bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, rgi_local_ray *local,
+                          rgi_candidate *candidate);
+
+#endif

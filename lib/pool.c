@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+#include "pool.h"
+
+#include "error.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <string.h>
+
+/* A call that is being worked on, in the caller's stack. Workers that joined are counted under the pool's lock, so the
+ * caller knows when the last has left and the job may vanish. */
+typedef struct job {
+    struct job *next;
+    rgi_body body;
+    void *context;
+    uint64_t count;
+    uint64_t taken;  /* atomic: the first index that nobody has taken */
+    uint32_t joined; /* workers inside, under the lock */
+} job;
+
+struct rgi_pool {
+    rgi_memory *memory;
+    rg_parallel_for parallel_for;
+    void *user;
+    uint32_t workers;
+    uint32_t started; /* threads that run */
+    bool ending;
+    pthread_mutex_t lock;
+    pthread_cond_t work; /* a job came, or the end */
+    pthread_cond_t done; /* a worker left a job */
+    job *jobs;
+    pthread_t *threads;
+};
+
+static void work_on(job *j) {
+    for (;;) {
+        uint64_t index = __atomic_fetch_add(&j->taken, 1, __ATOMIC_RELAXED);
+        if (index >= j->count) return;
+        j->body(j->context, index);
+    }
+}
+
+static bool has_work(const job *j) { return __atomic_load_n(&j->taken, __ATOMIC_RELAXED) < j->count; }
+
+static void *worker(void *argument) {
+    rgi_pool *pool = argument;
+    pthread_mutex_lock(&pool->lock);
+    for (;;) {
+        job *j = pool->jobs;
+        while (j && !has_work(j)) j = j->next;
+        if (j) {
+            j->joined++;
+            pthread_mutex_unlock(&pool->lock);
+            work_on(j);
+            pthread_mutex_lock(&pool->lock);
+            if (--j->joined == 0) pthread_cond_broadcast(&pool->done);
+        } else if (pool->ending) {
+            break;
+        } else {
+            pthread_cond_wait(&pool->work, &pool->lock);
+        }
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return NULL;
+}
+
+void rgi_pool_run(rgi_pool *pool, uint64_t count, rgi_body body, void *context) {
+    if (pool->parallel_for && count > 1) {
+        pool->parallel_for(pool->user, count, body, context);
+        return;
+    }
+    job j = {NULL, body, context, count, 0, 0};
+    if (pool->started == 0 || count < 2) {
+        work_on(&j);
+        return;
+    }
+    pthread_mutex_lock(&pool->lock);
+    j.next = pool->jobs;
+    pool->jobs = &j;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->lock);
+
+    work_on(&j);
+
+    pthread_mutex_lock(&pool->lock);
+    job **link = &pool->jobs;
+    while (*link != &j) link = &(*link)->next;
+    *link = j.next;
+    while (j.joined) pthread_cond_wait(&pool->done, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+uint32_t rgi_pool_workers(const rgi_pool *pool) { return pool->parallel_for ? 0 : pool->workers; }
+
+void rgi_pool_destroy(rgi_pool *pool) {
+    if (!pool) return;
+    pthread_mutex_lock(&pool->lock);
+    pool->ending = true;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->lock);
+    for (uint32_t i = 0; i < pool->started; i++) pthread_join(pool->threads[i], NULL);
+    pthread_cond_destroy(&pool->done);
+    pthread_cond_destroy(&pool->work);
+    pthread_mutex_destroy(&pool->lock);
+    rgi_memory *memory = pool->memory;
+    rgi_release(memory, pool->threads, pool->workers, sizeof *pool->threads);
+    rgi_release(memory, pool, 1, sizeof *pool);
+}
+
+static rg_result start_threads(rgi_pool *pool) {
+    for (uint32_t i = 1; i < pool->workers; i++) {
+        int error = pthread_create(&pool->threads[pool->started], NULL, worker, pool);
+        if (error)
+            return rgi_fail(RG_OUT_OF_THREADS, "worker %u of %u could not be started (error %d)", i, pool->workers - 1,
+                            error);
+        pool->started++;
+    }
+    return RG_OK;
+}
+
+rg_result rgi_pool_create(rgi_memory *memory, uint32_t workers, rg_parallel_for parallel_for, void *user, rgi_pool **out) {
+    rgi_pool *pool;
+    rg_result result = rgi_allocate(memory, 1, sizeof *pool, "the pool of workers", &pool);
+    if (result) return result;
+    memset(pool, 0, sizeof *pool);
+    pool->memory = memory;
+    pool->parallel_for = parallel_for;
+    pool->user = user;
+    pool->workers = parallel_for ? 1 : workers;
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->work, NULL);
+    pthread_cond_init(&pool->done, NULL);
+    if (pool->workers > 1) {
+        result = rgi_allocate(memory, pool->workers, sizeof *pool->threads, "the workers", &pool->threads);
+        if (!result) result = start_threads(pool);
+    }
+    if (result) {
+        rgi_pool_destroy(pool);
+        return result;
+    }
+    *out = pool;
+    return RG_OK;
+}

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene.h"
+
+#include "error.h"
+#include "struct_size.h"
+
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    MAX_WORKERS = 1024,
+    CONFIG_LEAST = sizeof(rg_scene_config),
+    REPORT_LEAST = sizeof(rg_scene_report)
+};
+
+/* ------------------------------------------------------------------------------------------------ the lock */
+
+static __thread rgi_frame *innermost;
+
+bool rgi_scene_inside(const rg_scene *scene) {
+    for (const rgi_frame *f = innermost; f; f = f->outer) {
+        if (f->scene == scene) return true;
+    }
+    return false;
+}
+
+void rgi_frame_push(rgi_frame *frame, const rg_scene *scene) {
+    frame->scene = scene;
+    frame->outer = innermost;
+    frame->locked = false;
+    innermost = frame;
+}
+
+void rgi_frame_pop(rgi_frame *frame) { innermost = frame->outer; }
+
+void rgi_scene_begin_read(rg_scene *scene, rgi_frame *frame) {
+    bool inside = innermost && rgi_scene_inside(scene);
+    if (!inside) pthread_rwlock_rdlock(&scene->lock);
+    rgi_frame_push(frame, scene);
+    frame->locked = !inside;
+}
+
+void rgi_scene_end_read(rg_scene *scene, rgi_frame *frame) {
+    rgi_frame_pop(frame);
+    if (frame->locked) pthread_rwlock_unlock(&scene->lock);
+}
+
+rg_result rgi_scene_begin_change(rg_scene *scene, rgi_frame *frame) {
+    if (!scene) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL");
+    if (innermost && rgi_scene_inside(scene))
+        return rgi_fail(RG_BUSY, "a scene can't be changed from inside a callback of its own");
+    pthread_rwlock_wrlock(&scene->lock);
+    rgi_frame_push(frame, scene);
+    return RG_OK;
+}
+
+rg_result rgi_scene_end_change(rg_scene *scene, rgi_frame *frame, rg_result result) {
+    rgi_frame_pop(frame);
+    pthread_rwlock_unlock(&scene->lock);
+    return result;
+}
+
+/* A waiting change goes before traces that come later, so that endless tracing can't starve it. */
+static void lock_init(pthread_rwlock_t *lock) {
+    pthread_rwlockattr_t attributes;
+    pthread_rwlockattr_init(&attributes);
+#ifdef PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP
+    pthread_rwlockattr_setkind_np(&attributes, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
+#endif
+    pthread_rwlock_init(lock, &attributes);
+    pthread_rwlockattr_destroy(&attributes);
+}
+
+/* ------------------------------------------------------------------------------------------------ lifetime */
+
+static const rg_scene_config default_config = {sizeof(rg_scene_config), 0, 0, {NULL, NULL, NULL}, NULL, NULL, NULL, NULL,
+                                               NULL};
+
+rg_result rg_scene_config_default(rg_scene_config *config, size_t size) {
+    return rgi_struct_default(&default_config, sizeof default_config, CONFIG_LEAST, config, size, "rg_scene_config");
+}
+
+static uint32_t processors(void) {
+    long n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n < 1 ? 1 : n > MAX_WORKERS ? MAX_WORKERS : (uint32_t)n;
+}
+
+static void scene_free(rg_scene *scene) {
+    rgi_pool_destroy(scene->pool);
+    for (uint32_t i = 0; i < scene->objects.used; i++) rg_shape_release(&rgi_scene_object(scene, i)->shape);
+    for (uint32_t i = 0; i < scene->grid_places; i++) rgi_scene_drop_grid(scene, i);
+    rgi_slots_free(&scene->objects);
+    rgi_slots_free(&scene->linears);
+    pthread_rwlock_destroy(&scene->lock);
+    rgi_memory memory = scene->memory;
+    rgi_release(&memory, scene, 1, sizeof *scene);
+}
+
+static rg_result check_config(const rg_scene_config *config, rg_grid_config *grid) {
+    if (config->workers > MAX_WORKERS)
+        return rgi_fail(RG_INVALID_VALUE, "workers is %u, above %d", config->workers, MAX_WORKERS);
+    if (config->reserved != 0)
+        return rgi_fail(RG_INVALID_ARGUMENT, "rg_scene_config.reserved is %u, not 0", config->reserved);
+    return rgi_grid_config_read(grid, config->grid);
+}
+
+rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
+    rg_scene_config config;
+    rg_grid_config grid;
+    rgi_memory memory;
+    rg_scene *scene;
+    uint32_t index;
+    if (!out) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL: nowhere to return it");
+    rg_result result = rgi_struct_read(&config, sizeof config, CONFIG_LEAST, given, "rg_scene_config");
+    if (!result) result = check_config(&config, &grid);
+    if (!result) result = rgi_memory_init(&memory, &config.allocator);
+    if (!result) result = rgi_allocate(&memory, 1, sizeof *scene, "a scene", &scene);
+    if (result) return result;
+    memset(scene, 0, sizeof *scene);
+    scene->memory = memory;
+    scene->log = config.log;
+    scene->log_user = config.log_user;
+    lock_init(&scene->lock);
+    rgi_slots_init(&scene->objects, &scene->memory, sizeof(rgi_object), "objects");
+    rgi_slots_init(&scene->linears, &scene->memory, sizeof(rgi_linear), "poses");
+    result = rgi_scene_add_grid(scene, &grid, &index);
+    if (!result)
+        result = rgi_pool_create(&scene->memory, config.workers ? config.workers : processors(), config.parallel_for,
+                                 config.parallel_for_user, &scene->pool);
+    if (result) {
+        scene_free(scene);
+        return result;
+    }
+    *out = scene;
+    return RG_OK;
+}
+
+rg_result rg_scene_destroy(rg_scene **pointer) {
+    if (!pointer || !*pointer) return RG_OK;
+    if (rgi_scene_inside(*pointer))
+        return rgi_fail(RG_BUSY, "a scene can't be destroyed from inside a callback of its own");
+    rg_scene *scene = *pointer;
+    *pointer = NULL;
+    scene_free(scene);
+    return RG_OK;
+}
+
+rg_result rg_scene_stats(rg_scene *scene, rg_scene_report *report) {
+    rg_scene_report r;
+    rgi_frame frame;
+    if (!scene) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL");
+    memset(&r, 0, sizeof r);
+    rgi_scene_begin_read(scene, &frame);
+    r.objects = scene->object_count;
+    r.slots = scene->objects.used;
+    r.bytes = __atomic_load_n(&scene->memory.bytes, __ATOMIC_RELAXED);
+    r.invalid_rays = __atomic_load_n(&scene->invalid_rays, __ATOMIC_RELAXED);
+    r.workers = rgi_pool_workers(scene->pool);
+    r.grids = scene->grid_count;
+    rgi_scene_end_read(scene, &frame);
+    return rgi_struct_write(&r, sizeof r, REPORT_LEAST, report, "rg_scene_report");
+}

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT */
+#include "shape.h"
+
+#include "error.h"
+#include "pose.h"
+#include "struct_size.h"
+#include "vec.h"
+#include "views.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* --------------------------------------------------------------------------------------------- intersection */
+
+static bool user_intersect(const rg_user_shape *user, rgi_local_ray *ray, rgi_candidate *candidate) {
+    rg_local_ray local;
+    rg_local_hit hit;
+    memset(&hit, 0, sizeof hit);
+    rgi_copy(ray->origin, local.origin);
+    rgi_copy(ray->direction, local.direction);
+    local.t_min = ray->t_min - ray->shift;
+    local.t_max = ray->t_max - ray->shift;
+    /* occluded may answer for all hits only where every hit counts. */
+    if (ray->any && user->occluded && !ray->accept && ray->sides == (RGI_FRONT | RGI_BACK)) {
+        int32_t answer = user->occluded(user->user, &local);
+        ray->failed |= answer < 0;
+        candidate->t = ray->t_max;
+        return answer > 0;
+    }
+    int32_t answer = user->intersect(user->user, &local, &hit);
+    double nn = rgi_dot(hit.normal, hit.normal);
+    if (answer < 0 || (answer > 0 && (isnan(hit.t) || !(nn > 0 && nn < INFINITY)))) ray->failed = true;
+    if (answer <= 0 || ray->failed) return false;
+    uint32_t side = rgi_dot(hit.normal, ray->direction) < 0 ? RGI_FRONT : RGI_BACK;
+    if (!rgi_in_range(ray, hit.t, side, candidate)) return false;
+    rgi_copy(hit.normal, candidate->normal);
+    candidate->u = hit.u;
+    candidate->v = hit.v;
+    candidate->primitive = hit.primitive;
+    return rgi_accepted(ray, candidate);
+}
+
+bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidate *candidate) {
+    switch (shape->kind) {
+    case RG_SHAPE_SPHERE: return rgi_sphere_intersect(shape->of.radius, ray, candidate);
+    case RG_SHAPE_BOX: return rgi_box_intersect(shape->lo, shape->hi, ray, candidate);
+    case RG_SHAPE_CAPSULE: return rgi_capsule_intersect(&shape->of.capsule, ray, candidate);
+    case RG_SHAPE_MESH: return rgi_mesh_intersect(shape->of.mesh, ray, candidate);
+    default: return user_intersect(&shape->of.user, ray, candidate);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- bounds */
+
+/* Half the extent of a posed sphere along a world axis: the row's length times the radius. */
+static double row_length(const float *matrix, int row) {
+    double r[3] = {matrix[3 * row], matrix[3 * row + 1], matrix[3 * row + 2]};
+    return sqrt(rgi_dot(r, r));
+}
+
+/* The box around `linear * shape`, before the position is added; *scale bounds what was added up on the way. */
+static void posed_box(const rg_shape *shape, const float *matrix, int i, double *lo, double *hi, double *scale) {
+    const float *row = matrix + 3 * i;
+    double radius = shape->kind == RG_SHAPE_SPHERE ? shape->of.radius : shape->of.capsule.radius;
+    if (shape->kind == RG_SHAPE_SPHERE) {
+        *hi = radius * row_length(matrix, i);
+        *lo = -*hi;
+        *scale = *hi;
+    } else if (shape->kind == RG_SHAPE_CAPSULE) {
+        const rgi_capsule *c = &shape->of.capsule;
+        double at_a = 0, along = 0, reach = radius * row_length(matrix, i);
+        *scale = reach;
+        for (int j = 0; j < 3; j++) {
+            at_a += row[j] * c->a[j];
+            along += row[j] * c->axis[j] * c->length;
+            *scale += fabs(row[j] * c->a[j]) + fabs(row[j] * c->axis[j] * c->length);
+        }
+        *lo = rgi_min(at_a, at_a + along) - reach;
+        *hi = rgi_max(at_a, at_a + along) + reach;
+    } else {
+        *lo = *hi = *scale = 0;
+        for (int j = 0; j < 3; j++) {
+            double a = row[j] * shape->lo[j], b = row[j] * shape->hi[j];
+            *lo += rgi_min(a, b);
+            *hi += rgi_max(a, b);
+            *scale += rgi_max(fabs(a), fabs(b));
+        }
+    }
+}
+
+rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const float *matrix, double lo[3],
+                           double hi[3]) {
+    for (int i = 0; i < 3; i++) {
+        double scale;
+        bool infinite = isinf(shape->lo[i]) || isinf(shape->hi[i]);
+        if (!matrix) {
+            lo[i] = shape->lo[i];
+            hi[i] = shape->hi[i];
+            scale = infinite ? 0 : rgi_max(fabs(lo[i]), fabs(hi[i]));
+        } else if (isinf(shape->lo[0] + shape->lo[1] + shape->lo[2]) || isinf(shape->hi[0] + shape->hi[1] + shape->hi[2])) {
+            return rgi_fail(RG_INVALID_VALUE, "an infinite box needs the identity as linear part of its pose");
+        } else {
+            posed_box(shape, matrix, i, &lo[i], &hi[i], &scale);
+        }
+        /* At most a dozen roundings, each of half an ulp of what was added up. */
+        double pad = 0x1p-49 * (scale + fabs(position[i]));
+        lo[i] += position[i] - pad;
+        hi[i] += position[i] + pad;
+        if (!infinite && !(lo[i] >= -2 * RG_COORDINATE_MAX && hi[i] <= 2 * RG_COORDINATE_MAX))
+            return rgi_fail(RG_INVALID_VALUE, "the posed shape reaches from %c = %g to %g, which is too far", "xyz"[i], lo[i],
+                            hi[i]);
+    }
+    return RG_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------- creation */
+
+static const rg_shape_config default_config = {sizeof(rg_shape_config), {NULL, NULL, NULL}};
+enum {
+    CONFIG_LEAST = sizeof(rg_shape_config),
+    MESH_LEAST = sizeof(rg_mesh_views),
+    USER_LEAST = sizeof(rg_user_shape),
+    REPORT_LEAST = sizeof(rg_shape_report)
+};
+
+rg_result rg_shape_config_default(rg_shape_config *config, size_t size) {
+    return rgi_struct_default(&default_config, sizeof default_config, CONFIG_LEAST, config, size, "rg_shape_config");
+}
+
+static rg_result shape_new(const rg_shape_config *given, rg_shape_kind kind, rg_shape **out) {
+    rg_shape_config config;
+    rgi_memory memory;
+    rg_shape *shape;
+    if (!out) return rgi_fail(RG_INVALID_ARGUMENT, "shape is NULL: nowhere to return it");
+    rg_result result = rgi_struct_read(&config, sizeof config, CONFIG_LEAST, given, "rg_shape_config");
+    if (!result) result = rgi_memory_init(&memory, &config.allocator);
+    if (!result) result = rgi_allocate(&memory, 1, sizeof *shape, "a shape", &shape);
+    if (result) return result;
+    memset(shape, 0, sizeof *shape);
+    shape->memory = memory;
+    shape->references = 1;
+    shape->kind = kind;
+    *out = shape;
+    return RG_OK;
+}
+
+static rg_result check_radius(double radius) {
+    if (radius >= RG_RADIUS_MIN && radius <= RG_COORDINATE_MAX) return RG_OK;
+    return rgi_fail(RG_INVALID_VALUE, "radius is %g, not in [%g, %g]", radius, RG_RADIUS_MIN, RG_COORDINATE_MAX);
+}
+
+static rg_result check_point(const double point[3], const char *name) {
+    if (!point) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", name);
+    for (int i = 0; i < 3; i++) {
+        if (!(fabs(point[i]) <= RG_COORDINATE_MAX))
+            return rgi_fail(RG_INVALID_VALUE, "%s[%d] is %g, which is not finite or beyond %g", name, i, point[i],
+                            RG_COORDINATE_MAX);
+    }
+    return RG_OK;
+}
+
+rg_result rg_shape_create_sphere(const rg_shape_config *config, double radius, rg_shape **out) {
+    rg_result result = check_radius(radius);
+    if (!result) result = shape_new(config, RG_SHAPE_SPHERE, out);
+    if (result) return result;
+    (*out)->of.radius = radius;
+    rgi_set((*out)->lo, -radius, -radius, -radius);
+    rgi_set((*out)->hi, radius, radius, radius);
+    return RG_OK;
+}
+
+static rg_result check_box(const double lo[3], const double hi[3], bool infinite_allowed) {
+    for (int i = 0; i < 3; i++) {
+        bool lo_right = fabs(lo[i]) <= RG_COORDINATE_MAX || (infinite_allowed && lo[i] == -INFINITY);
+        bool hi_right = fabs(hi[i]) <= RG_COORDINATE_MAX || (infinite_allowed && hi[i] == INFINITY);
+        if (!lo_right) return rgi_fail(RG_INVALID_VALUE, "lo[%d] of the box is %g", i, lo[i]);
+        if (!hi_right) return rgi_fail(RG_INVALID_VALUE, "hi[%d] of the box is %g", i, hi[i]);
+        if (lo[i] > hi[i])
+            return rgi_fail(RG_INVALID_VALUE, "lo[%d] = %g is larger than hi[%d] = %g", i, lo[i], i, hi[i]);
+    }
+    return RG_OK;
+}
+
+rg_result rg_shape_create_box(const rg_shape_config *config, const double lo[3], const double hi[3], rg_shape **out) {
+    if (!lo || !hi) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", lo ? "hi" : "lo");
+    rg_result result = check_box(lo, hi, true);
+    if (!result) result = shape_new(config, RG_SHAPE_BOX, out);
+    if (result) return result;
+    rgi_copy(lo, (*out)->lo);
+    rgi_copy(hi, (*out)->hi);
+    return RG_OK;
+}
+
+rg_result rg_shape_create_capsule(const rg_shape_config *config, const double a[3], const double b[3], double radius,
+                                  rg_shape **out) {
+    rg_result result = check_point(a, "a");
+    if (!result) result = check_point(b, "b");
+    if (!result) result = check_radius(radius);
+    if (!result) result = shape_new(config, RG_SHAPE_CAPSULE, out);
+    if (result) return result;
+    rgi_capsule_init(&(*out)->of.capsule, a, b, radius);
+    for (int i = 0; i < 3; i++) {
+        (*out)->lo[i] = rgi_min(a[i], b[i]) - radius;
+        (*out)->hi[i] = rgi_max(a[i], b[i]) + radius;
+    }
+    return RG_OK;
+}
+
+static rg_result check_mesh(const rg_mesh_views *v) {
+    rg_result result = rgi_check_view3(v->vertices.x, v->vertices.y, v->vertices.z, v->vertices.type, RGI_FLOATS, 1,
+                                       "vertices");
+    if (!result)
+        result = rgi_check_view3(v->indices.x, v->indices.y, v->indices.z, v->indices.type, RGI_INDICES, 0, "indices");
+    if (result) return result;
+    if (v->triangle_count == 0) return rgi_fail(RG_INVALID_VALUE, "triangle_count is 0: a mesh has a triangle at least");
+    if (v->triangle_count >= 1u << 31)
+        return rgi_fail(RG_LIMIT_EXCEEDED, "triangle_count is %" PRIu64 ", not below 2^31", v->triangle_count);
+    if (v->vertex_count >= UINT32_MAX)
+        return rgi_fail(RG_LIMIT_EXCEEDED, "vertex_count is %" PRIu64 ", not below 2^32 - 1", v->vertex_count);
+    if (v->vertex_count == 0) return rgi_fail(RG_INVALID_VALUE, "vertex_count is 0");
+    if (!v->indices.x && v->triangle_count != v->vertex_count / 3)
+        return rgi_fail(RG_INVALID_VALUE, "triangle_count is %" PRIu64 ", but %" PRIu64 " vertices without indices make %" PRIu64,
+                        v->triangle_count, v->vertex_count, v->vertex_count / 3);
+    return RG_OK;
+}
+
+rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_mesh_views *given, rg_shape **out) {
+    rg_mesh_views views;
+    rg_shape *shape = NULL;
+    if (!given) return rgi_fail(RG_INVALID_ARGUMENT, "views is NULL");
+    rg_result result = rgi_struct_read(&views, sizeof views, MESH_LEAST, given, "rg_mesh_views");
+    if (!result) result = check_mesh(&views);
+    if (!result) result = out ? RG_OK : rgi_fail(RG_INVALID_ARGUMENT, "shape is NULL: nowhere to return it");
+    if (!result) result = shape_new(config, RG_SHAPE_MESH, &shape);
+    if (!result) result = rgi_mesh_create(&shape->memory, &views, &shape->of.mesh);
+    if (result) {
+        rg_shape_release(&shape);
+        return result;
+    }
+    rgi_copy(shape->of.mesh->lo, shape->lo);
+    rgi_copy(shape->of.mesh->hi, shape->hi);
+    *out = shape;
+    return RG_OK;
+}
+
+rg_result rg_shape_create_user(const rg_shape_config *config, const rg_user_shape *given, rg_shape **out) {
+    rg_user_shape user;
+    if (!given) return rgi_fail(RG_INVALID_ARGUMENT, "definition is NULL");
+    rg_result result = rgi_struct_read(&user, sizeof user, USER_LEAST, given, "rg_user_shape");
+    if (!result && !user.intersect) result = rgi_fail(RG_INVALID_ARGUMENT, "rg_user_shape.intersect is NULL");
+    if (!result) result = check_box(user.lo, user.hi, false);
+    if (!result) result = shape_new(config, RG_SHAPE_USER, out);
+    if (result) return result;
+    (*out)->of.user = user;
+    rgi_copy(user.lo, (*out)->lo);
+    rgi_copy(user.hi, (*out)->hi);
+    return RG_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------- lifetime */
+
+void rg_shape_retain(rg_shape *shape) {
+    if (shape) __atomic_fetch_add(&shape->references, 1, __ATOMIC_RELAXED);
+}
+
+void rg_shape_release(rg_shape **pointer) {
+    if (!pointer || !*pointer) return;
+    rg_shape *shape = *pointer;
+    *pointer = NULL;
+    if (__atomic_sub_fetch(&shape->references, 1, __ATOMIC_ACQ_REL) != 0) return;
+    if (shape->kind == RG_SHAPE_MESH) rgi_mesh_destroy(shape->of.mesh);
+    if (shape->kind == RG_SHAPE_USER && shape->of.user.destroy) shape->of.user.destroy(shape->of.user.user);
+    rgi_memory memory = shape->memory;
+    rgi_release(&memory, shape, 1, sizeof *shape);
+}
+
+rg_result rg_shape_stats(const rg_shape *shape, rg_shape_report *report) {
+    rg_shape_report r;
+    if (!shape) return rgi_fail(RG_INVALID_ARGUMENT, "shape is NULL");
+    memset(&r, 0, sizeof r);
+    r.kind = shape->kind;
+    rgi_copy(shape->lo, r.lo);
+    rgi_copy(shape->hi, r.hi);
+    r.triangle_count = shape->kind == RG_SHAPE_MESH ? shape->of.mesh->triangle_count : 0;
+    r.bytes = __atomic_load_n(&shape->memory.bytes, __ATOMIC_RELAXED);
+    return rgi_struct_write(&r, sizeof r, REPORT_LEAST, report, "rg_shape_report");
+}

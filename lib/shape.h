@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/* Shapes behind one door: made and counted here, asked through rgi_shape_intersect. */
+#ifndef RAYGRID_LIB_SHAPE_H
+#define RAYGRID_LIB_SHAPE_H
+
+#include "intersect.h"
+#include "memory.h"
+#include "mesh.h"
+
+struct rg_shape {
+    rgi_memory memory;
+    uint32_t references; /* atomic */
+    rg_shape_kind kind;
+    double lo[3], hi[3]; /* the local box; for a box the box itself */
+    union {
+        double radius; /* sphere */
+        rgi_capsule capsule;
+        rgi_mesh *mesh;
+        rg_user_shape user;
+    } of;
+};
+
+/** As the functions of intersect.h, for any shape. ray->failed is set if a callback failed. */
+bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidate *candidate);
+
+/**
+ * The world box of the shape at a position, with a linear part or NULL for the identity: holds the posed shape with all
+ * rounding counted. RG_INVALID_VALUE: beyond RG_COORDINATE_MAX, or an infinite shape with a linear part.
+ */
+rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const float *matrix, double lo[3],
+                           double hi[3]);
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Records of one size with small indices and addresses that never change: chunks of 1024, and a list of the free.
+ * Each record starts with a uint32_t that belongs to the list while the record is free.
+ */
+#ifndef RAYGRID_LIB_SLOTS_H
+#define RAYGRID_LIB_SLOTS_H
+
+#include "memory.h"
+
+#include <stdint.h>
+
+enum { RGI_CHUNK_BITS = 10, RGI_CHUNK = 1 << RGI_CHUNK_BITS };
+
+/** No record. */
+#define RGI_NONE UINT32_MAX
+
+typedef struct rgi_slots {
+    rgi_memory *memory;
+    char **chunks;
+    uint32_t chunk_count;
+    uint32_t chunk_room;  /* pointers that `chunks` has room for */
+    uint32_t record_size; /* bytes */
+    uint32_t used;        /* records that were ever taken: all indices are below */
+    uint32_t free_first;  /* head of the list of the free */
+    uint32_t free_count;
+    const char *purpose; /* for messages */
+} rgi_slots;
+
+void rgi_slots_init(rgi_slots *slots, rgi_memory *memory, size_t record_size, const char *purpose);
+void rgi_slots_free(rgi_slots *slots);
+
+/**
+ * Makes sure that the next `count` calls of rgi_slots_take succeed. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED (2^32 - 1 records);
+ * what is taken is not touched. Cost: constant for count <= 1024, but for the chunk pointers, 8 bytes for 1024 records.
+ */
+rg_result rgi_slots_reserve(rgi_slots *slots, uint64_t count);
+
+static inline void *rgi_slots_at(const rgi_slots *slots, uint32_t index) {
+    return slots->chunks[index >> RGI_CHUNK_BITS] + (size_t)(index & (RGI_CHUNK - 1)) * slots->record_size;
+}
+
+/** Takes a record: the one freed last, else a new one, which is all zeros. Must have been reserved. */
+uint32_t rgi_slots_take(rgi_slots *slots);
+
+/** Gives a record back. Its first four bytes are the list's from now on; the rest stays as it is. */
+void rgi_slots_give(rgi_slots *slots, uint32_t index);
+
+#endif
