@@ -71,12 +71,16 @@ rg_result rgi_cells_make(rgi_cells *cells, rgi_memory *memory, bool hierarchical
 
 /* The tile and the cell of a coordinate; false if it is too far away. Cells are counted inside the tile. */
 static bool locate(const rgi_cells *cells, const rgi_level *level, int axis, double x, int32_t *tile, uint32_t *cell) {
-    double k = floor((x - cells->base[axis]) / cells->extent[axis]);
-    if (!(fabs(k) < FARTHEST_TILE)) return false;
-    double inside = (x - rgi_tile_base(cells, axis, k)) * level->per_unit[axis];
-    double last = level->count[axis] - 1;
-    *tile = (int32_t)k;
-    *cell = (uint32_t)rgi_max(0, rgi_min(inside, last));
+    double inside = x - cells->base[axis];
+    *tile = 0;
+    if (!(inside >= 0 && inside < cells->extent[axis])) {
+        double k = inside / cells->extent[axis];
+        if (!(fabs(k) < FARTHEST_TILE)) return false;
+        k = rgi_floor(k);
+        *tile = (int32_t)k;
+        inside = rgi_max(0, x - rgi_tile_base(cells, axis, k));
+    }
+    *cell = (uint32_t)rgi_min(inside * level->per_unit[axis], level->count[axis] - 1);
     return true;
 }
 

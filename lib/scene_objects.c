@@ -118,14 +118,11 @@ static rg_result insert_one(rg_scene *scene, rg_shape *shape, const placing *p, 
     rg_result result = rgi_slots_reserve(&scene->objects, 1);
     if (!result && p->is_linear) result = rgi_slots_reserve(&scene->linears, 1);
     if (result) return result;
-    uint32_t slot = rgi_slots_take(&scene->objects), member;
-    rgi_object *object = rgi_scene_object(scene, slot);
-    if (object->generation == 0) object->generation = 1;
+    uint32_t slot = rgi_slots_next(&scene->objects), member;
     result = rgi_grid_insert(scene->grids[grid].grid, slot, p->lo, p->hi, &member);
-    if (result) {
-        rgi_slots_give(&scene->objects, slot);
-        return result;
-    }
+    if (result) return result;
+    rgi_object *object = rgi_scene_object(scene, rgi_slots_take(&scene->objects));
+    if (object->generation == 0) object->generation = 1;
     rg_shape_retain(shape);
     object->shape = shape;
     object->linear = RGI_NONE;

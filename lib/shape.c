@@ -12,10 +12,26 @@
 
 /* --------------------------------------------------------------------------------------------- intersection */
 
+/* Surfaces of one user-defined shape that a ray may pass through before its callback counts as broken. */
+enum { MOST_SURFACES = 1024 };
+
+/* Asks for the closest hit from local->t_min on. Returns whether there is one in range, with its side; sets ray->failed. */
+static bool ask(const rg_user_shape *user, const rg_local_ray *local, rgi_local_ray *ray, rg_local_hit *hit,
+                uint32_t *side) {
+    memset(hit, 0, sizeof *hit);
+    int32_t answer = user->intersect(user->user, local, hit);
+    double nn = rgi_dot(hit->normal, hit->normal);
+    if (answer < 0 || (answer > 0 && (isnan(hit->t) || !(nn > 0 && nn < INFINITY)))) ray->failed = true;
+    if (answer <= 0 || ray->failed || !(hit->t >= local->t_min && hit->t <= local->t_max)) return false;
+    *side = rgi_dot(hit->normal, ray->direction) < 0 ? RGI_FRONT : RGI_BACK;
+    return true;
+}
+
+/* A callback knows nothing of culling and filters: where its hit does not count, it is asked for the next one beyond. */
 static bool user_intersect(const rg_user_shape *user, rgi_local_ray *ray, rgi_candidate *candidate) {
     rg_local_ray local;
     rg_local_hit hit;
-    memset(&hit, 0, sizeof hit);
+    uint32_t side;
     rgi_copy(ray->origin, local.origin);
     rgi_copy(ray->direction, local.direction);
     local.t_min = ray->t_min - ray->shift;
@@ -27,17 +43,18 @@ static bool user_intersect(const rg_user_shape *user, rgi_local_ray *ray, rgi_ca
         candidate->t = ray->t_max;
         return answer > 0;
     }
-    int32_t answer = user->intersect(user->user, &local, &hit);
-    double nn = rgi_dot(hit.normal, hit.normal);
-    if (answer < 0 || (answer > 0 && (isnan(hit.t) || !(nn > 0 && nn < INFINITY)))) ray->failed = true;
-    if (answer <= 0 || ray->failed) return false;
-    uint32_t side = rgi_dot(hit.normal, ray->direction) < 0 ? RGI_FRONT : RGI_BACK;
-    if (!rgi_in_range(ray, hit.t, side, candidate)) return false;
-    rgi_copy(hit.normal, candidate->normal);
-    candidate->u = hit.u;
-    candidate->v = hit.v;
-    candidate->primitive = hit.primitive;
-    return rgi_accepted(ray, candidate);
+    for (int i = 0; i < MOST_SURFACES; i++) {
+        if (!ask(user, &local, ray, &hit, &side)) return false;
+        local.t_min = nextafter(hit.t, INFINITY);
+        if (!rgi_in_range(ray, hit.t, side, candidate)) continue;
+        rgi_copy(hit.normal, candidate->normal);
+        candidate->u = hit.u;
+        candidate->v = hit.v;
+        candidate->primitive = hit.primitive;
+        if (rgi_accepted(ray, candidate)) return true;
+    }
+    ray->failed = true;
+    return false;
 }
 
 bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidate *candidate) {
@@ -106,7 +123,7 @@ rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], cons
         double pad = 0x1p-49 * (scale + fabs(position[i]));
         lo[i] += position[i] - pad;
         hi[i] += position[i] + pad;
-        if (!infinite && !(lo[i] >= -2 * RG_COORDINATE_MAX && hi[i] <= 2 * RG_COORDINATE_MAX))
+        if (!infinite && !(lo[i] >= -4 * RG_COORDINATE_MAX && hi[i] <= 4 * RG_COORDINATE_MAX))
             return rgi_fail(RG_INVALID_VALUE, "the posed shape reaches from %c = %g to %g, which is too far", "xyz"[i], lo[i],
                             hi[i]);
     }

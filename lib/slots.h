@@ -40,6 +40,11 @@ static inline void *rgi_slots_at(const rgi_slots *slots, uint32_t index) {
     return slots->chunks[index >> RGI_CHUNK_BITS] + (size_t)(index & (RGI_CHUNK - 1)) * slots->record_size;
 }
 
+/** The index that rgi_slots_take would return next. */
+static inline uint32_t rgi_slots_next(const rgi_slots *slots) {
+    return slots->free_count ? slots->free_first : slots->used;
+}
+
 /** Takes a record: the one freed last, else a new one, which is all zeros. Must have been reserved. */
 uint32_t rgi_slots_take(rgi_slots *slots);
 

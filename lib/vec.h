@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 static inline double rgi_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -36,6 +37,12 @@ static inline void rgi_set(double out[3], double x, double y, double z) {
 /* Not fmin and fmax: those must care for NaN and become library calls. */
 static inline double rgi_min(double a, double b) { return a < b ? a : b; }
 static inline double rgi_max(double a, double b) { return a > b ? a : b; }
+
+/** Rounds down; |x| < 2^62. Not floor, which on baseline x86-64 is a library call. */
+static inline double rgi_floor(double x) {
+    double whole = (double)(int64_t)x;
+    return whole > x ? whole - 1 : whole;
+}
 
 static inline double rgi_max_magnitude(const double a[3]) {
     return rgi_max(rgi_max(fabs(a[0]), fabs(a[1])), fabs(a[2]));

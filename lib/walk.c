@@ -75,10 +75,9 @@ static void stepper_init(stepper *s, const rgi_walk *walk, const double corner[3
     s->start = start;
     s->slack = fabs(start) * 0x1p-50;
     for (int a = 0; a < 3; a++) {
-        double inside = floor(s->origin[a] / size[a]);
         s->size[a] = size[a];
         s->step[a] = s->inverse[a] < 0 ? -1 : 1;
-        s->cell[a] = (int32_t)rgi_max(first[a], rgi_min(inside, last[a]));
+        s->cell[a] = (int32_t)rgi_floor(rgi_max(first[a], rgi_min(s->origin[a] / size[a], last[a])));
         s->next[a] = wall_ahead(s, a);
     }
 }
@@ -163,11 +162,11 @@ static bool walk_tile(const rgi_cells *cells, uint32_t index, double from, doubl
 static bool tile_range(const rgi_cells *cells, const double lo[3], const double hi[3], int32_t first[3],
                        int32_t last[3]) {
     for (int a = 0; a < 3; a++) {
-        double from = floor((lo[a] - cells->pad - cells->base[a]) / cells->extent[a]) - 1;
-        double to = floor((hi[a] + cells->pad - cells->base[a]) / cells->extent[a]) + 1;
+        double from = (lo[a] - cells->pad - cells->base[a]) / cells->extent[a] - 1;
+        double to = (hi[a] + cells->pad - cells->base[a]) / cells->extent[a] + 1;
         if (!(fabs(from) < MANY_TILES && fabs(to) < MANY_TILES)) return false;
-        first[a] = (int32_t)from;
-        last[a] = (int32_t)to;
+        first[a] = (int32_t)rgi_floor(from);
+        last[a] = (int32_t)rgi_floor(to);
     }
     return true;
 }

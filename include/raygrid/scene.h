@@ -78,7 +78,8 @@ RG_API rg_result rg_scene_destroy(rg_scene **scene);
 
 /**
  * Where an object is: world = position + linear * local. Any invertible linear part: rotation, scale, mirror, shear.
- * `linear` is stored by rows. The library computes with exactly the numbers given.
+ * `linear` is stored by rows. The library computes with exactly the numbers given. The posed shape must not reach
+ * beyond 4 * RG_COORDINATE_MAX, infinite boxes excepted.
  */
 typedef struct rg_pose {
     double position[3]; /* finite, at most RG_COORDINATE_MAX in magnitude */

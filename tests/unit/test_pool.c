@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+#include "pool.h"
+#include "unit.h"
+
+#include <pthread.h>
+#include <string.h>
+
+enum { MANY = 2000 };
+
+typedef struct work {
+    uint32_t done[MANY]; /* atomic */
+    pthread_t by[MANY];
+} work;
+
+static void body(void *context, uint64_t index) {
+    work *w = context;
+    __atomic_fetch_add(&w->done[index], 1, __ATOMIC_RELAXED);
+    w->by[index] = pthread_self();
+}
+
+static void run_and_check(rgi_pool *pool, uint64_t count) {
+    work *w = calloc(1, sizeof *w);
+    ck_assert_ptr_nonnull(w);
+    rgi_pool_run(pool, count, body, w);
+    for (uint64_t i = 0; i < MANY; i++) ck_assert_uint_eq(w->done[i], i < count);
+    free(w);
+}
+
+START_TEST(each_index_once) {
+    const uint32_t workers[] = {1, 2, 3, 8};
+    for (int i = 0; i < 4; i++) {
+        rgi_memory memory;
+        rgi_pool *pool;
+        rgi_memory_init(&memory, NULL);
+        ck_assert_int_eq(rgi_pool_create(&memory, workers[i], NULL, NULL, &pool), RG_OK);
+        ck_assert_uint_eq(rgi_pool_workers(pool), workers[i]);
+        for (uint64_t n = 0; n < 40; n++) run_and_check(pool, n);
+        run_and_check(pool, MANY);
+        rgi_pool_destroy(pool);
+        ck_assert_uint_eq(memory.bytes, 0);
+    }
+}
+END_TEST
+
+START_TEST(one_worker_is_the_caller) {
+    rgi_memory memory;
+    rgi_pool *pool;
+    work *w = calloc(1, sizeof *w);
+    rgi_memory_init(&memory, NULL);
+    ck_assert_int_eq(rgi_pool_create(&memory, 1, NULL, NULL, &pool), RG_OK);
+    rgi_pool_run(pool, MANY, body, w);
+    for (int i = 0; i < MANY; i++) ck_assert(pthread_equal(w->by[i], pthread_self()));
+    rgi_pool_destroy(pool);
+    free(w);
+}
+END_TEST
+
+static void *several(void *argument) {
+    for (int i = 0; i < 50; i++) run_and_check(argument, 1 + (uint64_t)i * 37);
+    return NULL;
+}
+
+START_TEST(several_callers_at_once) {
+    rgi_memory memory;
+    rgi_pool *pool;
+    pthread_t threads[4];
+    rgi_memory_init(&memory, NULL);
+    ck_assert_int_eq(rgi_pool_create(&memory, 3, NULL, NULL, &pool), RG_OK);
+    for (int i = 0; i < 4; i++) ck_assert_int_eq(pthread_create(&threads[i], NULL, several, pool), 0);
+    for (int i = 0; i < 4; i++) pthread_join(threads[i], NULL);
+    rgi_pool_destroy(pool);
+}
+END_TEST
+
+static void backwards(void *user, uint64_t count, void (*each)(void *, uint64_t), void *context) {
+    ++*(int *)user;
+    while (count) each(context, --count);
+}
+
+START_TEST(the_hosts_own) {
+    rgi_memory memory;
+    rgi_pool *pool;
+    int calls = 0;
+    rgi_memory_init(&memory, NULL);
+    ck_assert_int_eq(rgi_pool_create(&memory, 8, backwards, &calls, &pool), RG_OK);
+    ck_assert_uint_eq(rgi_pool_workers(pool), 0);
+    run_and_check(pool, MANY);
+    ck_assert_int_eq(calls, 1);
+    rgi_pool_destroy(pool);
+}
+END_TEST
+
+Suite *unit_suite(void) {
+    Suite *suite = suite_create("pool");
+    TCase *tests = tcase_create("pool");
+    tcase_add_test(tests, each_index_once);
+    tcase_add_test(tests, one_worker_is_the_caller);
+    tcase_add_test(tests, several_callers_at_once);
+    tcase_add_test(tests, the_hosts_own);
+    suite_add_tcase(suite, tests);
+    return suite;
+}
