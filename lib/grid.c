@@ -267,13 +267,15 @@ void rgi_grid_need_insert(const rgi_grid *grid, const double lo[3], const double
     need->members++;
 }
 
-void rgi_grid_need_move(const rgi_grid *grid, uint32_t member, const double lo[3], const double hi[3],
+bool rgi_grid_need_move(const rgi_grid *grid, uint32_t member, const double lo[3], const double hi[3],
                         rgi_grid_need *need) {
     const rgi_member *m = rgi_grid_member(grid, member);
     rgi_placement old, new;
     rgi_cells_place(&grid->cells, m->lo, m->hi, &old);
     rgi_cells_place(&grid->cells, lo, hi, &new);
-    if (!rgi_placement_equal(&old, &new)) rgi_cells_need(&grid->cells, &new, &need->entries, &need->tiles);
+    bool stays = rgi_placement_equal(&old, &new);
+    if (!stays) rgi_cells_need(&grid->cells, &new, &need->entries, &need->tiles);
+    return stays;
 }
 
 rg_result rgi_grid_reserve(rgi_grid *grid, const rgi_grid_need *need) {
@@ -311,6 +313,13 @@ rg_result rgi_grid_insert(rgi_grid *grid, uint32_t object, const double lo[3], c
     return RG_OK;
 }
 
+void rgi_grid_move_inside(rgi_grid *grid, uint32_t member, const double lo[3], const double hi[3]) {
+    rgi_member *m = rgi_slots_at(&grid->members, member);
+    rgi_copy(lo, m->lo);
+    rgi_copy(hi, m->hi);
+    hold(grid, lo, hi);
+}
+
 rg_result rgi_grid_move(rgi_grid *grid, uint32_t member, const double lo[3], const double hi[3]) {
     rgi_member *m = rgi_slots_at(&grid->members, member);
     rgi_placement old, new;
@@ -324,9 +333,7 @@ rg_result rgi_grid_move(rgi_grid *grid, uint32_t member, const double lo[3], con
         rgi_cells_remove(&grid->cells, m->entries);
         m->entries = rgi_cells_insert(&grid->cells, &new, m->object);
     }
-    rgi_copy(lo, m->lo);
-    rgi_copy(hi, m->hi);
-    hold(grid, lo, hi);
+    rgi_grid_move_inside(grid, member, lo, hi);
     return RG_OK;
 }
 

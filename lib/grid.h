@@ -60,9 +60,14 @@ typedef struct rgi_grid_need {
 } rgi_grid_need;
 
 void rgi_grid_need_insert(const rgi_grid *grid, const double lo[3], const double hi[3], rgi_grid_need *need);
-void rgi_grid_need_move(const rgi_grid *grid, uint32_t member, const double lo[3], const double hi[3],
+
+/** Returns whether the member would stay in its cells, which needs nothing. */
+bool rgi_grid_need_move(const rgi_grid *grid, uint32_t member, const double lo[3], const double hi[3],
                         rgi_grid_need *need);
 rg_result rgi_grid_reserve(rgi_grid *grid, const rgi_grid_need *need);
+
+/** rgi_grid_move for a member that is known to stay in its cells. */
+void rgi_grid_move_inside(rgi_grid *grid, uint32_t member, const double lo[3], const double hi[3]);
 
 void rgi_grid_remove(rgi_grid *grid, uint32_t member);
 

@@ -47,24 +47,22 @@ enum { NEAR = 64 };
 
 /*
  * Whether a ray passes the ball around the object's position by so much that no rounding matters: the distance squared
- * has an error of some 2^-50 of `oo`, and the ball gets 2^-8 more radius. *along: where the ray is nearest.
+ * (times dd: no division for the many that pass) has an error of some 2^-50 of oo, and the ball gets 2^-8 more radius.
  */
-static bool passes(const double oc[3], double oo, double reach, const rgi_ray *ray, double *along) {
-    double b = rgi_dot(oc, ray->direction);
-    *along = -(b / ray->dd);
-    return oo + b * *along > reach * reach * (1 + 0x1p-8) + oo * 0x1p-40;
+static bool passes(double oo, double b, double reach, const rgi_ray *ray) {
+    return oo * ray->dd - b * b > (reach * reach * (1 + 0x1p-8) + oo * 0x1p-40) * ray->dd;
 }
 
 bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, rgi_local_ray *local,
                           rgi_candidate *candidate) {
-    double oc[3], along;
+    double oc[3];
     rgi_sub(ray->origin, object->position, oc);
-    double oo = rgi_dot(oc, oc);
-    if (passes(oc, oo, object->reach, ray, &along)) return false;
+    double oo = rgi_dot(oc, oc), b = rgi_dot(oc, ray->direction);
+    if (passes(oo, b, object->reach, ray)) return false;
     local->shift = 0;
     if (oo > (double)(NEAR * NEAR) * object->reach * object->reach) {
-        local->shift = along;
-        rgi_rebase3(ray->origin, object->position, along, ray->direction, oc);
+        local->shift = -(b / ray->dd);
+        rgi_rebase3(ray->origin, object->position, local->shift, ray->direction, oc);
     }
     if (linear) {
         rgi_transform(linear->inverse, oc, local->origin);

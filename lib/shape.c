@@ -34,8 +34,11 @@ static bool user_intersect(const rg_user_shape *user, rgi_local_ray *ray, rgi_ca
     uint32_t side;
     rgi_copy(ray->origin, local.origin);
     rgi_copy(ray->direction, local.direction);
+    /* Wider than the range by what is rounded here and in the callback, so that no tie is lost; rgi_in_range decides. */
     local.t_min = ray->t_min - ray->shift;
     local.t_max = ray->t_max - ray->shift;
+    if (isfinite(local.t_min)) local.t_min -= 0x1p-51 * (fabs(ray->t_min) + fabs(ray->shift));
+    if (isfinite(local.t_max)) local.t_max += 0x1p-51 * (fabs(ray->t_max) + fabs(ray->shift));
     /* occluded may answer for all hits only where every hit counts. */
     if (ray->any && user->occluded && !ray->accept && ray->sides == (RGI_FRONT | RGI_BACK)) {
         int32_t answer = user->occluded(user->user, &local);

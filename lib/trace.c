@@ -57,14 +57,21 @@ typedef struct query {
 
 /* ---------------------------------------------------------------------------------------------- the hit record */
 
-/* Normals go by the transposed inverse, so they stay outward under mirrors too. */
-static void world_normal(const rgi_linear *linear, const rgi_candidate *c, float out[3]) {
+/*
+ * Normals go by the transposed inverse, so they stay outward under mirrors too. Where a shape is so thin for its length
+ * that rounding leaves nothing of its normal, the one against the ray stands in: nothing in a hit is NaN.
+ */
+static void world_normal(const rgi_ray *ray, const rgi_linear *linear, const rgi_candidate *c, float out[3]) {
     double n[3];
     if (linear)
         rgi_transform_transposed(linear->inverse, c->normal, n);
     else
         rgi_copy(c->normal, n);
     double largest = rgi_max_magnitude(n);
+    if (!(largest > 0 && largest < INFINITY)) {
+        for (int i = 0; i < 3; i++) n[i] = -ray->direction[i];
+        largest = 1;
+    }
     for (int i = 0; i < 3; i++) n[i] /= largest;
     double length = sqrt(rgi_dot(n, n));
     for (int i = 0; i < 3; i++) out[i] = (float)(n[i] / length);
@@ -104,7 +111,7 @@ static void hit_record(const query *q, const rgi_object *object, rg_object id, c
     hit->object = id;
     if (wanted & (POSITION | OFFSET)) rgi_rebase3(q->ray.origin, nowhere, c->t, q->ray.direction, hit->position);
     if (wanted & OFFSET) hit->offset = (float)offset(object, linear, &q->ray, c->t, hit->position);
-    if (wanted & NORMAL) world_normal(linear, c, hit->normal);
+    if (wanted & NORMAL) world_normal(&q->ray, linear, c, hit->normal);
     hit->u = (float)c->u;
     hit->v = (float)c->v;
     hit->primitive = c->primitive;

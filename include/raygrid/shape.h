@@ -52,10 +52,10 @@ RG_API rg_result rg_shape_create_sphere(const rg_shape_config *config, double ra
 
 /**
  * A box with its faces in the local axes' planes, from corner `lo` to corner `hi`, lo <= hi on each axis. It may have
- * no thickness (lo == hi), and may be infinite (lo -inf, hi +inf), on any axis; an infinite axis needs a pose whose
- * linear part is the identity. Edges and corners belong to the box.
- * Hits: primitive 0 to 5 for the faces -x, +x, -y, +y, -z, +z (the lowest where several meet; of two faces without
- * thickness between them the one that looks towards the ray), u = v = 0.
+ * no thickness (lo == hi), and may be infinite (lo -inf, hi +inf, or both), on any axis; an infinite axis needs a pose
+ * whose linear part is the identity. Edges and corners belong to the box.
+ * Hits: primitive 0 to 5 for the faces -x, +x, -y, +y, -z, +z: the face by which the ray enters the box (leaves it, if
+ * that is the hit), the lowest of those where it does so at an edge or corner; u = v = 0.
  * Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE, RG_OUT_OF_MEMORY. Cost: one allocation.
  */
 RG_API rg_result rg_shape_create_box(const rg_shape_config *config, const double lo[3], const double hi[3],
@@ -98,7 +98,7 @@ RG_API rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_me
 typedef struct rg_local_ray {
     double origin[3];
     double direction[3]; /* any length but 0 */
-    double t_min, t_max; /* only hits with t_min <= t <= t_max count */
+    double t_min, t_max; /* hits with t_min <= t <= t_max may count; the library checks the last bits itself */
 } rg_local_ray;
 
 /** What a user-defined shape reports of a hit. */

@@ -15,8 +15,8 @@
  *
  * Accuracy: let D be the distance from the ray's origin to an object and R the radius of the object around its
  * position. Where a ray passes the surface's silhouette by more than 2^-40 R, whether it hits is decided right, at any
- * D and any distance of both from the world's origin; t is within 2^-50 D + 2^-40 R / |cos| in world length,
- * where cos is that of the angle between ray and normal (linear parts of condition k: 2^-40 k).
+ * D up to 2^60 R and any distance of both from the world's origin; t is within 2^-50 D + 2^-40 R / |cos| in world length,
+ * where cos is that of the angle between ray and normal (linear parts of condition k: 2^-40 k). docs/numerics.md has more.
  *
  * Thread rule: any number of threads at once, also while others change the scene. Nothing is allocated.
  */
@@ -49,12 +49,13 @@ RG_API rg_ray rg_ray_from(const double origin[3], const double direction[3]);
 /** The closest hit of a ray. For a miss: object RG_NO_OBJECT, t +infinity (NaN for an invalid ray), primitive
  *  RG_NO_PRIMITIVE, all else 0. */
 typedef struct rg_hit {
-    double t;           /* in units of the direction's length */
+    double t;           /* in units of the direction's length; +infinity with an object: beyond the largest double */
     rg_object object;
     double position[3]; /* of the hit, world: origin + t * direction, rounded once */
     float normal[3];    /* geometric, outward, length 1, world */
     float offset;       /* distance along the normal, to either side, from which a further ray of any direction that
-                           leaves on that side does not hit the same spot of this object again */
+                           leaves on that side does not hit the same spot of this object again; +infinity
+                           where no float is large enough, beyond coordinates of 1e50 */
     float u, v;         /* barycentrics, see the shapes */
     uint32_t primitive; /* see the shapes */
     uint32_t reserved;  /* 0 */

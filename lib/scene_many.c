@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Insert, move and remove many objects. Each call goes over its input twice: once to check all and to add up what memory it
+ * takes, then, when all of it is there, to do it. So it is done whole or not at all.
+ */
+#include "error.h"
+#include "scene_objects.h"
+#include "struct_size.h"
+#include "vec.h"
+#include "views.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { INSERT_LEAST = sizeof(rg_insert_views), POSES_LEAST = sizeof(rg_pose_views) };
+
+/* The i-th of views of poses. Without columns: `object`'s linear part, or the identity if there is no object. */
+static rg_result place_view(const rg_scene *scene, const rg_pose_views *views, uint64_t i, const rg_shape *shape,
+                            const rgi_object *object, rgi_placing *p) {
+    double position[3], column[3];
+    float matrix[9];
+    rgi_load3(&views->position, i, position);
+    if (!views->column[0].x)
+        return object ? rgi_place_at(scene, object, position, p) : rgi_place(shape, position, rgi_identity, p);
+    for (int j = 0; j < 3; j++) {
+        rgi_load3(&views->column[j], i, column);
+        for (int r = 0; r < 3; r++) matrix[3 * r + j] = (float)column[r];
+    }
+    return rgi_place(shape, position, matrix, p);
+}
+
+static rg_result check_poses(const rg_pose_views *views) {
+    const rg_input3 *v = &views->position;
+    rg_result result = rgi_check_view3(v->x, v->y, v->z, v->type, RGI_FLOATS, 1, "poses.position");
+    for (int j = 0; j < 3 && !result; j++) {
+        v = &views->column[j];
+        result = rgi_check_view3(v->x, v->y, v->z, v->type, RGI_FLOATS, 0, "poses.column");
+        if (!result && !v->x != !views->column[0].x)
+            result = rgi_fail(RG_INVALID_ARGUMENT, "poses.column: some of the three columns are given, not all");
+    }
+    return result;
+}
+
+static rg_result check_count(uint64_t count) {
+    if (count < UINT32_MAX) return RG_OK;
+    return rgi_fail(RG_LIMIT_EXCEEDED, "count is %" PRIu64 ", more than a scene can hold", count);
+}
+
+static rg_shape *shape_at(const rg_insert_views *views, uint64_t i) {
+    rg_shape *shape;
+    memcpy(&shape, rgi_record(views->shapes, views->shapes_stride, i), sizeof shape);
+    return shape;
+}
+
+/* Checks all that is to be inserted and makes room for it. */
+static rg_result prepare_insert(rg_scene *scene, const rg_insert_views *views, uint64_t count, uint32_t grid) {
+    rgi_grid_need need = {0, 0, 0};
+    uint64_t linears = 0;
+    rg_result result = RG_OK;
+    rgi_placing p;
+    for (uint64_t i = 0; i < count && !result; i++) {
+        rg_shape *shape = shape_at(views, i);
+        result = shape ? place_view(scene, views->poses, i, shape, NULL, &p)
+                       : rgi_fail(RG_INVALID_ARGUMENT, "shape is NULL");
+        if (result) {
+            rgi_fail_prefix("object %" PRIu64 " of the call: ", i);
+            return result;
+        }
+        linears += p.is_linear;
+        rgi_grid_need_insert(scene->grids[grid].grid, p.lo, p.hi, &need);
+    }
+    result = rgi_slots_reserve(&scene->objects, count);
+    if (!result) result = rgi_slots_reserve(&scene->linears, linears);
+    if (!result) result = rgi_grid_reserve(scene->grids[grid].grid, &need);
+    return result;
+}
+
+static rg_result insert_all(rg_scene *scene, const rg_insert_views *views, uint64_t count, const rg_output *objects) {
+    uint32_t grid;
+    rg_result result = rgi_scene_find_grid(scene, views->grid, &grid);
+    if (!result) result = prepare_insert(scene, views, count, grid);
+    for (uint64_t i = 0; i < count && !result; i++) {
+        rgi_placing p;
+        rg_object id;
+        rg_shape *shape = shape_at(views, i);
+        result = place_view(scene, views->poses, i, shape, NULL, &p);
+        uint32_t mask = (uint32_t)rgi_load_integer(&views->mask, i, UINT32_MAX);
+        if (!result) result = rgi_insert_one(scene, shape, &p, mask, grid, &id);
+        if (!result && objects) rgi_store_integer(objects, i, id);
+    }
+    if (!result) rgi_grid_settle(scene->grids[grid].grid);
+    return result;
+}
+
+rg_result rg_scene_insert_many(rg_scene *scene, const rg_insert_views *given, uint64_t count, const rg_output *objects) {
+    rg_insert_views views;
+    rg_pose_views poses;
+    rgi_frame frame;
+    if (!given || !given->poses) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", given ? "poses" : "views");
+    rg_result result = rgi_struct_read(&views, sizeof views, INSERT_LEAST, given, "rg_insert_views");
+    if (!result) result = rgi_struct_read(&poses, sizeof poses, POSES_LEAST, given->poses, "rg_pose_views");
+    views.poses = &poses;
+    if (!result) result = check_count(count);
+    if (!result && views.reserved)
+        result = rgi_fail(RG_INVALID_ARGUMENT, "rg_insert_views.reserved is %u, not 0", views.reserved);
+    if (!result && count && !views.shapes) result = rgi_fail(RG_INVALID_ARGUMENT, "shapes is NULL");
+    if (!result && count) result = check_poses(&poses);
+    if (!result) result = rgi_check_view(views.mask.data, views.mask.type, RGI_U32, 0, "mask");
+    if (!result && objects) result = rgi_check_view(objects->data, objects->type, RGI_U64, 0, "objects");
+    if (!result) result = rgi_scene_begin_change(scene, &frame);
+    if (result) return result;
+    return rgi_scene_end_change(scene, &frame, insert_all(scene, &views, count, objects));
+}
+
+/* Bits of the grids that a call on many has touched: their rules are applied once, at its end. */
+typedef struct touched {
+    uint32_t bits[RGI_GRIDS / 32];
+} touched;
+
+static void touch(touched *t, uint32_t grid) { t->bits[grid / 32] |= 1u << grid % 32; }
+static bool is_touched(const touched *t, uint32_t grid) { return t->bits[grid / 32] >> grid % 32 & 1; }
+
+static void settle(rg_scene *scene, const touched *t) {
+    for (uint32_t i = 0; i < scene->grid_places; i++) {
+        if (is_touched(t, i)) rgi_grid_settle(scene->grids[i].grid);
+    }
+}
+
+static rg_result find_nth(const rg_scene *scene, const rg_input *objects, uint64_t i, uint32_t *slot) {
+    rg_result result = rgi_find_object(scene, rgi_load_integer(objects, i, 0), slot);
+    if (result) rgi_fail_prefix("object %" PRIu64 " of the call: ", i);
+    return result;
+}
+
+/*
+ * While a call on many checks its objects, a free bit of their grid's number marks those it has met: so an id given
+ * twice is known without memory for it. The marks are taken off again whatever comes out.
+ */
+enum { MARK = RGI_GRIDS };
+
+static void unmark(rg_scene *scene, const rg_input *objects, uint64_t count) {
+    for (uint64_t i = 0; i < count; i++)
+        rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0)))->grid &= ~(uint32_t)MARK;
+}
+
+/** A move that was checked, for the second time over: what took time to find out. */
+typedef struct checked_move {
+    double position[3], lo[3], hi[3], reach;
+    uint32_t slot;
+    bool whole;  /* a linear part is concerned, or the object is moved twice: to be done from the start */
+    bool inside; /* it stays in its cells */
+} checked_move;
+
+/** What the moves of a call take. */
+typedef struct move_need {
+    rgi_grid_need grids[RGI_GRIDS];
+    touched touched;
+    uint64_t linears;
+} move_need;
+
+static rg_result check_move(rg_scene *scene, const rg_pose_views *poses, uint64_t i, checked_move *move,
+                            move_need *need) {
+    rgi_placing p;
+    rgi_object *object = rgi_scene_object(scene, move->slot);
+    uint32_t grid = object->grid & (MARK - 1);
+    rg_result result = place_view(scene, poses, i, object->shape, object, &p);
+    if (result) {
+        rgi_fail_prefix("object %" PRIu64 " of the call: ", i);
+        return result;
+    }
+    rgi_copy(p.position, move->position);
+    rgi_copy(p.lo, move->lo);
+    rgi_copy(p.hi, move->hi);
+    move->reach = p.reach;
+    move->inside = rgi_grid_need_move(scene->grids[grid].grid, object->member, p.lo, p.hi, &need->grids[grid]);
+    move->whole = p.is_linear || object->linear != RGI_NONE || (object->grid & MARK);
+    need->linears += p.is_linear && object->linear == RGI_NONE;
+    touch(&need->touched, grid);
+    object->grid |= MARK;
+    return RG_OK;
+}
+
+/* Checks all moves and makes room for them. */
+static rg_result prepare_move(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count,
+                              checked_move *moves, move_need *need) {
+    uint64_t marked = 0;
+    rg_result result = RG_OK;
+    memset(need, 0, sizeof *need);
+    for (; marked < count && !result; marked += !result) {
+        result = find_nth(scene, objects, marked, &moves[marked].slot);
+        if (!result) result = check_move(scene, poses, marked, &moves[marked], need);
+    }
+    unmark(scene, objects, marked);
+    if (!result) result = rgi_slots_reserve(&scene->linears, need->linears);
+    for (uint32_t g = 0; g < scene->grid_places && !result; g++) {
+        if (is_touched(&need->touched, g)) result = rgi_grid_reserve(scene->grids[g].grid, &need->grids[g]);
+    }
+    return result;
+}
+
+static rg_result make_move(rg_scene *scene, const rg_pose_views *poses, uint64_t i, const checked_move *move) {
+    rgi_object *object = rgi_scene_object(scene, move->slot);
+    rgi_grid *grid = scene->grids[object->grid].grid;
+    rg_result result = RG_OK;
+    if (move->whole) {
+        rgi_placing p;
+        result = place_view(scene, poses, i, object->shape, object, &p);
+        return result ? result : rgi_move_one(scene, object, &p);
+    }
+    if (move->inside)
+        rgi_grid_move_inside(grid, object->member, move->lo, move->hi);
+    else
+        result = rgi_grid_move(grid, object->member, move->lo, move->hi);
+    object->reach = move->reach;
+    rgi_copy(move->position, object->position);
+    return result;
+}
+
+static rg_result move_all(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count) {
+    move_need need;
+    checked_move *moves = NULL;
+    if (count == 0) return RG_OK;
+    rg_result result = rgi_allocate(&scene->memory, count, sizeof *moves, "moving many objects", &moves);
+    if (result) return result;
+    result = prepare_move(scene, objects, poses, count, moves, &need);
+    for (uint64_t i = 0; i < count && !result; i++) result = make_move(scene, poses, i, &moves[i]);
+    rgi_release(&scene->memory, moves, count, sizeof *moves);
+    if (!result) settle(scene, &need.touched);
+    return result;
+}
+
+rg_result rg_scene_move_many(rg_scene *scene, const rg_input *objects, const rg_pose_views *given, uint64_t count) {
+    rg_pose_views poses;
+    rgi_frame frame;
+    if (!objects || !given) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", objects ? "poses" : "objects");
+    rg_result result = rgi_struct_read(&poses, sizeof poses, POSES_LEAST, given, "rg_pose_views");
+    if (!result && count) result = check_poses(&poses);
+    if (!result) result = rgi_check_view(objects->data, objects->type, RGI_U64, count > 0, "objects");
+    if (!result) result = rgi_scene_begin_change(scene, &frame);
+    if (result) return result;
+    return rgi_scene_end_change(scene, &frame, move_all(scene, objects, &poses, count));
+}
+
+static rg_result mark_all(rg_scene *scene, const rg_input *objects, uint64_t count, uint64_t *marked) {
+    uint32_t slot;
+    for (*marked = 0; *marked < count; ++*marked) {
+        rg_result result = find_nth(scene, objects, *marked, &slot);
+        if (result) return result;
+        rgi_object *object = rgi_scene_object(scene, slot);
+        if (object->grid & MARK)
+            return rgi_fail(RG_INVALID_ID, "object %" PRIu64 " of the call: 0x%" PRIx64 " is given twice", *marked,
+                            rgi_object_id(object, slot));
+        object->grid |= MARK;
+    }
+    return RG_OK;
+}
+
+static rg_result remove_all(rg_scene *scene, const rg_input *objects, uint64_t count) {
+    uint64_t marked;
+    touched grids;
+    memset(&grids, 0, sizeof grids);
+    rg_result result = mark_all(scene, objects, count, &marked);
+    unmark(scene, objects, marked);
+    if (result) return result;
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t slot = RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0));
+        touch(&grids, rgi_scene_object(scene, slot)->grid);
+        rg_shape *shape = rgi_remove_one(scene, slot);
+        rg_shape_release(&shape);
+    }
+    settle(scene, &grids);
+    return RG_OK;
+}
+
+rg_result rg_scene_remove_many(rg_scene *scene, const rg_input *objects, uint64_t count) {
+    rgi_frame frame;
+    if (!objects) return rgi_fail(RG_INVALID_ARGUMENT, "objects is NULL");
+    rg_result result = rgi_check_view(objects->data, objects->type, RGI_U64, count > 0, "objects");
+    if (!result) result = rgi_scene_begin_change(scene, &frame);
+    if (result) return result;
+    return rgi_scene_end_change(scene, &frame, remove_all(scene, objects, count));
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+/* What calls on one object and calls on many share. All of it with the scene held for a change. */
+#ifndef RAYGRID_LIB_SCENE_OBJECTS_H
+#define RAYGRID_LIB_SCENE_OBJECTS_H
+
+#include "scene.h"
+
+/** Where an object is to be: checked, with all that is derived from it. */
+typedef struct rgi_placing {
+    double position[3];
+    bool is_linear; /* has a linear part other than the identity */
+    rgi_linear linear;
+    double lo[3], hi[3];
+    double reach;
+} rgi_placing;
+
+/** Checks a pose for a shape and derives the rest. RG_INVALID_VALUE. */
+rg_result rgi_place(const rg_shape *shape, const double position[3], const float matrix[9], rgi_placing *placing);
+
+/** The same for a new position of an object that keeps its linear part. */
+rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3], rgi_placing *placing);
+
+/** RG_INVALID_ID if the id is stale or was never given out; else *slot is its slot. */
+rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot);
+
+/** These change one object whole or not at all; the rules of its grid are to be applied afterwards (rgi_grid_settle). */
+rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *placing, uint32_t mask, uint32_t grid,
+                         rg_object *id);
+rg_result rgi_move_one(rg_scene *scene, rgi_object *object, const rgi_placing *placing);
+
+/** The part of a move that does not concern the grid. A record for a new linear part must have been reserved. */
+void rgi_set_pose(rg_scene *scene, rgi_object *object, const rgi_placing *placing);
+
+/** Returns the shape, for the caller to release last: its destroy callback must find a scene that is in order. */
+rg_shape *rgi_remove_one(rg_scene *scene, uint32_t slot);
+
+#endif
