@@ -76,6 +76,9 @@ rg_result rgi_grid_config_read(rg_grid_config *config, const rg_grid_config *giv
             return rgi_fail(RG_INVALID_VALUE, "the box of the grid goes from lo[%d] = %g to hi[%d] = %g", a, c->lo[a], a,
                             c->hi[a]);
         extent[a] = c->hi[a] - c->lo[a];
+        if (extent[a] < RG_RADIUS_MIN)
+            return rgi_fail(RG_INVALID_VALUE, "the box of the grid is %g wide on axis %d, less than %g", extent[a], a,
+                            RG_RADIUS_MIN);
     }
     uint32_t count[3];
     counts_for_resolution(c->kind, extent, c->resolution ? c->resolution : 1, count);
@@ -86,9 +89,9 @@ rg_result rgi_grid_config_read(rg_grid_config *config, const rg_grid_config *giv
 
 /* ---------------------------------------------------------------------------------------- making the cells */
 
-/* The side of cubic cells so that so many fit in the box; sides of the box that are shorter than a cell do not count. */
-static double automatic_size(const double extent[3], double wanted) {
-    double e[3] = {extent[0], extent[1], extent[2]};
+/* The side of cubic cells so that so many fit in the box; sides of the box that are no longer than a cell do not count. */
+static double automatic_size(const double sides[3], double wanted) {
+    double e[3] = {sides[0], sides[1], sides[2]};
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {
             if (e[j] > e[j + 1]) {
@@ -99,19 +102,19 @@ static double automatic_size(const double extent[3], double wanted) {
         }
     }
     double size = cbrt(e[0] / wanted * e[1] * e[2]);
-    if (e[0] < size) size = sqrt(e[1] / wanted * e[2]);
-    if (e[1] < size) size = e[2] / wanted;
+    if (e[0] <= size) size = sqrt(e[1] / wanted * e[2]);
+    if (e[1] <= size) size = e[2] / wanted;
     return size;
 }
 
 static void automatic_counts(rg_grid_kind kind, const double extent[3], uint64_t members, uint32_t count[3]) {
     double wanted = rgi_min(CELLS_PER_MEMBER * (double)(members > 2 ? members : 2), MAX_AUTOMATIC_CELLS);
-    /* Free of the box's scale, so that the product of its sides stays in range. */
-    double longest = rgi_max_magnitude(extent), relative[3];
-    for (int a = 0; a < 3; a++) relative[a] = extent[a] / longest;
-    double size = automatic_size(relative, wanted);
+    /* Free of the box's scale, and of sides that will have one cell anyway, so that the products stay in range. */
+    double longest = rgi_max_magnitude(extent), sides[3];
+    for (int a = 0; a < 3; a++) sides[a] = extent[a] / longest < 0x1p-40 ? 0 : extent[a] / longest;
+    double size = automatic_size(sides, wanted);
     for (int a = 0; a < 3; a++) {
-        double n = relative[a] / size;
+        double n = sides[a] / size;
         count[a] = (uint32_t)rgi_max(1, rgi_min(floor(n + 0.5), MAX_RESOLUTION));
         uint32_t power = 1;
         while (power * 1.4142135623730951 < n && power < MAX_RESOLUTION) power *= 2;

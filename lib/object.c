@@ -32,8 +32,9 @@ bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3
         ray->origin[i] = origin[i];
         ray->direction[i] = direction[i] * ray->to_world * ray->to_world2;
     }
-    ray->t_min = t_min * from_world * from_world2;
-    ray->t_max = t_max * from_world * from_world2;
+    /* No further than where t in the caller's units is still a double: a hit must not look like a miss. */
+    ray->t_min = rgi_max(t_min, -DBL_MAX) * from_world * from_world2;
+    ray->t_max = rgi_min(t_max, DBL_MAX) * from_world * from_world2;
     ray->dd = rgi_dot(ray->direction, ray->direction);
     ray->mask = mask;
     return true;

@@ -4,6 +4,7 @@
 #include "error.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -107,15 +108,20 @@ void rgi_pool_destroy(rgi_pool *pool) {
     rgi_release(memory, pool, 1, sizeof *pool);
 }
 
+/* Workers start with all signals blocked: the host's handlers are for the host's threads. */
 static rg_result start_threads(rgi_pool *pool) {
-    for (uint32_t i = 1; i < pool->workers; i++) {
-        int error = pthread_create(&pool->threads[pool->started], NULL, worker, pool);
-        if (error)
-            return rgi_fail(RG_OUT_OF_THREADS, "worker %u of %u could not be started (error %d)", i, pool->workers - 1,
-                            error);
-        pool->started++;
+    sigset_t all, before;
+    int error = 0;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    while (!error && pool->started < pool->workers - 1) {
+        error = pthread_create(&pool->threads[pool->started], NULL, worker, pool);
+        pool->started += !error;
     }
-    return RG_OK;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (!error) return RG_OK;
+    return rgi_fail(RG_OUT_OF_THREADS, "worker %u of %u could not be started (error %d)", pool->started + 1,
+                    pool->workers - 1, error);
 }
 
 rg_result rgi_pool_create(rgi_memory *memory, uint32_t workers, rg_parallel_for parallel_for, void *user, rgi_pool **out) {

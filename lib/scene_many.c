@@ -29,6 +29,16 @@ static rg_result place_view(const rg_scene *scene, const rg_pose_views *views, u
     return rgi_place(shape, position, matrix, p);
 }
 
+rg_result rg_pose_views_of(rg_pose_views *views, size_t size, const rg_pose *poses, ptrdiff_t stride) {
+    rg_pose_views v;
+    if (!poses) return rgi_fail(RG_INVALID_ARGUMENT, "poses is NULL");
+    memset(&v, 0, sizeof v);
+    v.position = rg_input3_packed(poses->position, stride, RG_F64);
+    for (int j = 0; j < 3; j++)
+        v.column[j] = (rg_input3){poses->linear + j, poses->linear + 3 + j, poses->linear + 6 + j, stride, RG_F32};
+    return rgi_struct_default(&v, sizeof v, POSES_LEAST, views, size, "rg_pose_views");
+}
+
 static rg_result check_poses(const rg_pose_views *views) {
     const rg_input3 *v = &views->position;
     rg_result result = rgi_check_view3(v->x, v->y, v->z, v->type, RGI_FLOATS, 1, "poses.position");

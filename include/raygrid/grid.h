@@ -19,6 +19,7 @@
 #define RAYGRID_GRID_H
 
 #include <raygrid/base.h>
+#include <raygrid/shape.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -59,8 +60,8 @@ typedef struct rg_grid_config {
      */
     uint32_t resolution;
     /**
-     * The first physical box, lo < hi. All six 0: from the objects, when the first are inserted. A rebuild always
-     * makes a new box from the objects.
+     * The first physical box; hi - lo at least RG_RADIUS_MIN. All six 0: from the objects, when the first are inserted. A rebuild makes a new
+     * box from the objects, unless it only adapts an automatic resolution: then a box that was given stays.
      */
     double lo[3], hi[3];
     /**

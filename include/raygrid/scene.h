@@ -5,7 +5,8 @@
  * Thread rule: a scene may be used by any number of threads at once. Calls that change it wait for running traces to
  * end and are seen whole or not at all; a trace that starts after such a call returned sees its effect. There is no
  * commit and no step. From inside a callback (user-defined shape or filter) the scene being traced may be traced and
- * read; calls that would change it return RG_BUSY.
+ * read; calls that would change it return RG_BUSY. A callback may trace other scenes too, as long as no callback of those
+ * traces this one: each trace holds its scene against changes while it runs.
  */
 #ifndef RAYGRID_SCENE_H
 #define RAYGRID_SCENE_H
@@ -99,6 +100,12 @@ typedef struct rg_pose_views {
      */
     rg_input3 column[3];
 } rg_pose_views;
+
+/**
+ * Fills `views`, of `size` bytes at the caller's, with the views of an array of rg_pose: the first at `poses`, each
+ * `stride` bytes after the last; 0: all the same. RG_INVALID_ARGUMENT: a NULL pointer or an unknown size.
+ */
+RG_API rg_result rg_pose_views_of(rg_pose_views *views, size_t size, const rg_pose *poses, ptrdiff_t stride);
 
 /** What rg_scene_insert_many inserts. Zero it, set the size, then what is given. */
 typedef struct rg_insert_views {

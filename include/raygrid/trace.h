@@ -35,7 +35,7 @@ typedef struct rg_ray {
     double origin[3];
     double direction[3]; /* any length but 0 */
     double t_min;        /* may be negative or -infinity */
-    double t_max;        /* may be +infinity */
+    double t_max;        /* may be +infinity; what lies at a t beyond the largest double is not hit */
     uint32_t mask;       /* sees objects with (object mask & mask) != 0 */
     uint32_t reserved;   /* ignored */
 } rg_ray;
@@ -49,7 +49,7 @@ RG_API rg_ray rg_ray_from(const double origin[3], const double direction[3]);
 /** The closest hit of a ray. For a miss: object RG_NO_OBJECT, t +infinity (NaN for an invalid ray), primitive
  *  RG_NO_PRIMITIVE, all else 0. */
 typedef struct rg_hit {
-    double t;           /* in units of the direction's length; +infinity with an object: beyond the largest double */
+    double t;           /* in units of the direction's length */
     rg_object object;
     double position[3]; /* of the hit, world: origin + t * direction, rounded once */
     float normal[3];    /* geometric, outward, length 1, world */

@@ -205,6 +205,30 @@ START_TEST(configurations) {
     ck_assert_int_eq(rgi_grid_config_read(&config, &given), RG_LIMIT_EXCEEDED);
     given.resolution = 512;
     ck_assert_int_eq(rgi_grid_config_read(&config, &given), RG_OK);
+    given.lo[1] = -5e-324;
+    given.hi[1] = 0;
+    ck_assert_int_eq(rgi_grid_config_read(&config, &given), RG_INVALID_VALUE);
+}
+END_TEST
+
+/* However thin a given box is, an automatic resolution has no more cells than it should. */
+START_TEST(thin_boxes) {
+    const double thin[] = {1e-99, 1e-50, 1e-20, 1e-10, 1e-3};
+    for (int i = 0; i < 25; i++) {
+        rg_grid_config config, given;
+        rgi_grid grid;
+        rgi_memory_init(&memory, NULL);
+        ck_assert_int_eq(rg_grid_config_default(&given, sizeof given), RG_OK);
+        given.kind = 1 + i % 2;
+        given.hi[0] = 11.25;
+        given.hi[1] = thin[i / 5];
+        given.hi[2] = thin[i % 5];
+        ck_assert_int_eq(rgi_grid_config_read(&config, &given), RG_OK);
+        ck_assert_int_eq(rgi_grid_init(&grid, &memory, &config, tell, NULL), RG_OK);
+        for (int k = 0; k < 1000; k++) insert(&grid, unit_random(), 0, 0, 1e-3);
+        ck_assert_uint_le(grid.cells.cell_count, 100000);
+        done(&grid);
+    }
 }
 END_TEST
 
@@ -220,6 +244,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, flat_thin_and_single);
     tcase_add_test(tests, infinite_members_leave_the_box_alone);
     tcase_add_test(tests, configurations);
+    tcase_add_test(tests, thin_boxes);
     suite_add_tcase(suite, tests);
     return suite;
 }

@@ -3,7 +3,10 @@
 #include "unit.h"
 
 #include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
 #include <string.h>
+#include <time.h>
 
 enum { MANY = 2000 };
 
@@ -72,6 +75,40 @@ START_TEST(several_callers_at_once) {
 }
 END_TEST
 
+static void signals_blocked(void *context, uint64_t index) {
+    sigset_t blocked;
+    work *w = context;
+    pthread_sigmask(SIG_SETMASK, NULL, &blocked);
+    w->by[index] = pthread_self();
+    w->done[index] = (uint32_t)sigismember(&blocked, SIGUSR1);
+    /* Long enough for the worker to wake up and take its share. */
+    for (struct timespec ms = {0, 1000000}; nanosleep(&ms, &ms);) continue;
+}
+
+START_TEST(signals_are_for_the_host) {
+    rgi_memory memory;
+    rgi_pool *pool;
+    sigset_t blocked;
+    int by_worker = 0;
+    work *w = calloc(1, sizeof *w);
+    rgi_memory_init(&memory, NULL);
+    ck_assert_int_eq(rgi_pool_create(&memory, 2, NULL, NULL, &pool), RG_OK);
+    pthread_sigmask(SIG_SETMASK, NULL, &blocked);
+    ck_assert(!sigismember(&blocked, SIGUSR1));
+    for (int turn = 0; turn < 100 && !by_worker; turn++) {
+        rgi_pool_run(pool, 40, signals_blocked, w);
+        for (int i = 0; i < 40; i++) {
+            bool own = pthread_equal(w->by[i], pthread_self());
+            by_worker += !own;
+            ck_assert_uint_eq(w->done[i], !own);
+        }
+    }
+    ck_assert_int_gt(by_worker, 0);
+    rgi_pool_destroy(pool);
+    free(w);
+}
+END_TEST
+
 static void backwards(void *user, uint64_t count, void (*each)(void *, uint64_t), void *context) {
     ++*(int *)user;
     while (count) each(context, --count);
@@ -96,6 +133,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, each_index_once);
     tcase_add_test(tests, one_worker_is_the_caller);
     tcase_add_test(tests, several_callers_at_once);
+    tcase_add_test(tests, signals_are_for_the_host);
     tcase_add_test(tests, the_hosts_own);
     suite_add_tcase(suite, tests);
     return suite;

@@ -266,6 +266,39 @@ START_TEST(bulk_calls_are_whole_or_nothing) {
 }
 END_TEST
 
+START_TEST(views_of_poses) {
+    struct {
+        int32_t before;
+        rg_pose pose;
+        int32_t after;
+    } records[3];
+    rg_pose_views poses;
+    rg_insert_views views;
+    rg_object ids[3];
+    rg_output out = {ids, sizeof ids[0], RG_U64};
+    memset(&records, 0, sizeof records);
+    memset(&views, 0, sizeof views);
+    for (int i = 0; i < 3; i++) {
+        records[i].pose = rg_pose_at(i, 2 * i, 3 * i);
+        for (int k = 0; k < 9; k++) records[i].pose.linear[k] += (float)(i + 1) / (float)(k + 3);
+    }
+    ck_assert_int_eq(rg_pose_views_of(&poses, sizeof poses, &records[0].pose, sizeof records[0]), RG_OK);
+    views.size = sizeof views;
+    views.shapes = &ball;
+    views.poses = &poses;
+    ck_assert_int_eq(rg_scene_insert_many(scene, &views, 3, &out), RG_OK);
+    for (int i = 0; i < 3; i++) {
+        rg_object_report report;
+        report.size = sizeof report;
+        ck_assert_int_eq(rg_scene_lookup(scene, ids[i], &report), RG_OK);
+        ck_assert_mem_eq(report.pose.position, records[i].pose.position, sizeof report.pose.position);
+        ck_assert_mem_eq(report.pose.linear, records[i].pose.linear, sizeof report.pose.linear);
+    }
+    ck_assert_int_eq(rg_pose_views_of(&poses, 3, &records[0].pose, 0), RG_INVALID_ARGUMENT);
+    ck_assert_int_eq(rg_pose_views_of(&poses, sizeof poses, NULL, 0), RG_INVALID_ARGUMENT);
+}
+END_TEST
+
 /* Columns given in double are rounded to float before anything is made of them: the same object as from floats, to the
  * last bit. (gcc 12 drops such roundings in pairs, see lib/meson.build.) */
 START_TEST(columns_in_double_are_rounded) {
@@ -405,6 +438,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, the_hosts_own_parallel_for);
     tcase_add_test(tests, ids);
     tcase_add_test(tests, bulk_calls_are_whole_or_nothing);
+    tcase_add_test(tests, views_of_poses);
     tcase_add_test(tests, columns_in_double_are_rounded);
     tcase_add_test(tests, several_grids);
     tcase_add_test(tests, no_ray_hits_where_it_starts);
