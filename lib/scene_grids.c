@@ -24,7 +24,7 @@ static uint32_t free_place(const rg_scene *scene) {
 rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint32_t *index) {
     rgi_grid *grid;
     *index = free_place(scene);
-    if (*index == RGI_GRIDS) return rgi_fail(RG_LIMIT_EXCEEDED, "a scene has %d grids at the most", RGI_GRIDS - 1);
+    if (*index == RGI_GRIDS) return rgi_fail(RG_LIMIT_EXCEEDED, "a scene has %d grids at the most", RGI_GRIDS);
     rg_result result = rgi_allocate(&scene->memory, 1, sizeof *grid, "a grid", &grid);
     if (result) return result;
     result = rgi_grid_init(grid, &scene->memory, config, scene->log, scene->log_user);

@@ -91,7 +91,7 @@ typedef struct rg_grid_report {
     uint64_t unbounded;                   /* objects that no cell can hold (infinite, or larger than the physical
                                              box), tested for every ray */
     uint64_t tiles;                       /* tiles of the physical box that hold something; 1 if nothing left it */
-    uint64_t rebuilds;                    /* how often it was rebuilt, by itself or by rg_grid_rebuild */
+    uint64_t rebuilds;                    /* how often it was rebuilt: by itself, rg_grid_rebuild, rg_grid_configure */
 } rg_grid_report;
 
 #ifdef __cplusplus

@@ -191,8 +191,8 @@ RG_API rg_result rg_scene_stats(rg_scene *scene, rg_scene_report *report);
 /* -------------------------------------------------------------------------------------------------- grids */
 
 /**
- * Adds an empty grid. Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE, RG_LIMIT_EXCEEDED (more than 255 grids),
- * RG_OUT_OF_MEMORY, RG_BUSY.
+ * Adds an empty grid. Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE, RG_LIMIT_EXCEEDED (more than 256 grids with the
+ * scene's own, or more than 2^28 cells), RG_OUT_OF_MEMORY, RG_BUSY.
  */
 RG_API rg_result rg_grid_create(rg_scene *scene, const rg_grid_config *config, rg_grid *grid);
 

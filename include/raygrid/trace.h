@@ -16,7 +16,8 @@
  * Accuracy: let D be the distance from the ray's origin to an object and R the radius of the object around its
  * position. Where a ray passes the surface's silhouette by more than 2^-40 R, whether it hits is decided right, at any
  * D up to 2^60 R and any distance of both from the world's origin; t is within 2^-50 D + 2^-40 R / |cos| in world length,
- * where cos is that of the angle between ray and normal (linear parts of condition k: 2^-40 k). docs/numerics.md has more.
+ * where cos is that of the angle between ray and normal (linear parts of condition k: 2^-40 k). Normals are right to
+ * 2^-20 and what that error of t makes of them where the surface is curved. docs/numerics.md has more.
  *
  * Thread rule: any number of threads at once, also while others change the scene. Nothing is allocated.
  */
