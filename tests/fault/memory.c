@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * memory: every allocation of a long scenario fails once, and once it fails with all that follow. Whatever call meets
+ * the failure returns RG_OUT_OF_MEMORY and has changed nothing, or succeeds as if nothing were amiss (where the
+ * memory would only have made it faster). Afterwards all goes on as if it had never failed, and in the end all memory
+ * is back.
+ */
+#include "allocator.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MANY = 200, OBJECTS = 1024, PROBES = 24, SHAPES = 5, SIDE = 12 };
+
+enum { BALL, CUBE, PILL, SOLID, OWN };
+
+typedef struct scenario {
+    test_allocator memory;
+    rg_scene *scene;
+    rg_shape *shapes[SHAPES];
+    rg_grid grid, spare;
+    rg_object objects[OBJECTS];
+    uint32_t count; /* of objects */
+    int own_destroyed;
+} scenario;
+
+typedef struct probe {
+    rg_hit hits[PROBES];
+    uint64_t objects, slots;
+    uint32_t grids;
+} probe;
+
+typedef rg_result step_function(scenario *s, uint32_t argument);
+
+typedef struct step {
+    const char *name;
+    step_function *run;
+    uint32_t argument, repeat;
+} step;
+
+static void fail(const char *step_name, uint32_t turn, const char *why) {
+    fprintf(stderr, "FAILED: %s (turn %" PRIu32 "): %s\n", step_name, turn, why);
+    exit(EXIT_FAILURE);
+}
+
+/* ---------------------------------------------------------------------------------------------- the steps */
+
+static int32_t own_intersect(void *user, const rg_local_ray *ray, rg_local_hit *hit) {
+    (void)user;
+    /* The plane x = 0 within the unit square. */
+    double t = -ray->origin[0] / ray->direction[0];
+    if (!(t >= ray->t_min && t <= ray->t_max)) return 0;
+    for (int i = 1; i < 3; i++) {
+        if (fabs(ray->origin[i] + t * ray->direction[i]) > 1) return 0;
+    }
+    *hit = (rg_local_hit){.t = t, .normal = {-1, 0, 0}};
+    return 1;
+}
+
+static void own_destroy(void *user) { ++*(int *)user; }
+
+static rg_result make_scene(scenario *s, uint32_t workers) {
+    rg_scene_config config = {.size = sizeof config, .workers = workers};
+    config.allocator = test_allocator_hooks(&s->memory);
+    return rg_scene_create(&config, &s->scene);
+}
+
+/* A dented square of SIDE x SIDE quads, each cut in two. */
+static rg_result make_mesh(const rg_shape_config *config, rg_shape **shape) {
+    enum { ROW = SIDE + 1 };
+    static float vertices[ROW * ROW][3];
+    static uint16_t indices[SIDE * SIDE * 2][3];
+    for (int i = 0; i < ROW * ROW; i++) {
+        vertices[i][0] = 2 * (float)(i % ROW) / SIDE - 1;
+        vertices[i][1] = 2 * (float)(i / ROW) / SIDE - 1;
+        vertices[i][2] = 0.1f * (float)(i % 7);
+    }
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int corner = i / SIDE * ROW + i % SIDE;
+        const int two[2][3] = {{corner, corner + 1, corner + ROW + 1}, {corner, corner + ROW + 1, corner + ROW}};
+        for (int k = 0; k < 6; k++) indices[2 * i + k / 3][k % 3] = (uint16_t)two[k / 3][k % 3];
+    }
+    rg_mesh_views views = {.size = sizeof views, .vertex_count = ROW * ROW, .triangle_count = SIDE * SIDE * 2};
+    views.vertices = rg_input3_packed(vertices, sizeof vertices[0], RG_F32);
+    views.indices = rg_input3_packed(indices, sizeof indices[0], RG_U16);
+    return rg_shape_create_mesh(config, &views, shape);
+}
+
+static rg_result make_shape(scenario *s, uint32_t which) {
+    static const double LO[3] = {-1, -1, -1}, HI[3] = {1, 1, 1};
+    rg_shape_config config = {.size = sizeof config, .allocator = test_allocator_hooks(&s->memory)};
+    rg_user_shape own = {.size = sizeof own, .user = &s->own_destroyed, .lo = {-1, -1, -1}, .hi = {1, 1, 1}};
+    own.intersect = own_intersect;
+    own.destroy = own_destroy;
+    switch (which) {
+    case BALL: return rg_shape_create_sphere(&config, 1, &s->shapes[BALL]);
+    case CUBE: return rg_shape_create_box(&config, LO, HI, &s->shapes[CUBE]);
+    case PILL: return rg_shape_create_capsule(&config, LO, HI, 0.5, &s->shapes[PILL]);
+    case SOLID: return make_mesh(&config, &s->shapes[SOLID]);
+    default: return rg_shape_create_user(&config, &own, &s->shapes[OWN]);
+    }
+}
+
+/* Spread over a cube whose side grows with the number, so that tiles, cells and boxes have to follow. */
+static rg_pose pose_of(uint32_t number, double scale) {
+    double at = scale * (1 + 0.01 * number);
+    rg_pose pose = rg_pose_at(at * cos(number), at * sin(1.7 * number), at * cos(2.3 * number + 1));
+    if (number % 3 == 0) pose.linear[0] = 2;
+    if (number % 5 == 0) pose.linear[1] = 0.5f;
+    return pose;
+}
+
+static rg_result insert_one(scenario *s, uint32_t scale) {
+    rg_pose pose = pose_of(s->count, scale);
+    rg_result result = rg_scene_insert(s->scene, s->shapes[s->count % SHAPES], &pose, &s->objects[s->count]);
+    if (result == RG_OK) s->count++;
+    return result;
+}
+
+static rg_result insert_many(scenario *s, uint32_t into_second_grid) {
+    rg_shape *shapes[MANY];
+    rg_pose poses[MANY];
+    for (uint32_t i = 0; i < MANY; i++) {
+        shapes[i] = s->shapes[i % SHAPES];
+        poses[i] = pose_of(s->count + i, 20);
+    }
+    rg_insert_views views = {.size = sizeof views, .shapes = shapes, .shapes_stride = sizeof *shapes};
+    rg_pose_views pose_views = {.size = sizeof pose_views};
+    pose_views.position = rg_input3_packed(poses[0].position, sizeof *poses, RG_F64);
+    for (int k = 0; k < 3; k++) {
+        const float *top = poses[0].linear + k;
+        pose_views.column[k] = (rg_input3){top, top + 3, top + 6, sizeof *poses, RG_F32};
+    }
+    views.poses = &pose_views;
+    views.grid = into_second_grid ? s->grid : RG_GRID_OF_SCENE;
+    rg_output out = {s->objects + s->count, sizeof *s->objects, RG_U64};
+    rg_result result = rg_scene_insert_many(s->scene, &views, MANY, &out);
+    if (result == RG_OK) s->count += MANY;
+    return result;
+}
+
+static rg_result move_one(scenario *s, uint32_t scale) {
+    rg_pose pose = pose_of(7 + s->count, scale);
+    return rg_scene_move(s->scene, s->objects[s->count / 2], &pose);
+}
+
+static rg_result move_to(scenario *s, uint32_t scale) {
+    rg_pose pose = pose_of(11 + s->count, scale);
+    return rg_scene_move_to(s->scene, s->objects[s->count / 3], pose.position);
+}
+
+static rg_result move_many(scenario *s, uint32_t scale) {
+    double positions[MANY][3];
+    for (uint32_t i = 0; i < MANY; i++) memcpy(positions[i], pose_of(i, scale).position, sizeof positions[i]);
+    rg_pose_views views = {.size = sizeof views};
+    views.position = rg_input3_packed(positions[0], sizeof positions[0], RG_F64);
+    rg_input ids = {s->objects, sizeof *s->objects, RG_U64};
+    return rg_scene_move_many(s->scene, &ids, &views, MANY);
+}
+
+static rg_result set_mask(scenario *s, uint32_t mask) { return rg_scene_set_mask(s->scene, s->objects[3], mask); }
+
+static rg_result remove_one(scenario *s, uint32_t unused) {
+    (void)unused;
+    rg_result result = rg_scene_remove(s->scene, s->objects[s->count - 1]);
+    if (result == RG_OK) s->count--;
+    return result;
+}
+
+static rg_result remove_many(scenario *s, uint32_t count) {
+    rg_input ids = {s->objects + s->count - count, sizeof *s->objects, RG_U64};
+    rg_result result = rg_scene_remove_many(s->scene, &ids, count);
+    if (result == RG_OK) s->count -= count;
+    return result;
+}
+
+static rg_result make_grid(scenario *s, uint32_t kind) {
+    rg_grid_config config = {.size = sizeof config, .kind = (rg_grid_kind)kind, .resolution = 8};
+    return rg_grid_create(s->scene, &config, kind == RG_GRID_UNIFORM ? &s->grid : &s->spare);
+}
+
+static rg_result destroy_spare_grid(scenario *s, uint32_t unused) {
+    (void)unused;
+    return rg_grid_destroy(s->scene, s->spare);
+}
+
+static rg_result configure(scenario *s, uint32_t kind) {
+    rg_grid_config config = {.size = sizeof config, .kind = (rg_grid_kind)kind, .lo = {-9, -9, -9}, .hi = {9, 9, 9}};
+    config.resolution = 16;
+    return rg_grid_configure(s->scene, kind == RG_GRID_UNIFORM ? RG_GRID_OF_SCENE : s->grid, &config);
+}
+
+static rg_result rebuild(scenario *s, uint32_t second) {
+    return rg_grid_rebuild(s->scene, second ? s->grid : RG_GRID_OF_SCENE);
+}
+
+static const step STEPS[] = {
+    {"create", make_scene, 1, 1},
+    {"shape", make_shape, BALL, 1},
+    {"shape", make_shape, CUBE, 1},
+    {"shape", make_shape, PILL, 1},
+    {"mesh", make_shape, SOLID, 1},
+    {"user shape", make_shape, OWN, 1},
+    {"insert", insert_one, 5, 40},
+    {"grid", make_grid, RG_GRID_UNIFORM, 1},
+    {"grid", make_grid, RG_GRID_HIERARCHICAL, 1},
+    {"insert many", insert_many, 0, 1},
+    {"insert many into the second grid", insert_many, 1, 1},
+    {"move", move_one, 30, 10},
+    {"move_to", move_to, 1000, 10},
+    {"set_mask", set_mask, 5, 1},
+    {"move many", move_many, 500, 1},
+    {"rebuild", rebuild, 0, 1},
+    {"rebuild of the second", rebuild, 1, 1},
+    {"configure", configure, RG_GRID_UNIFORM, 1},
+    {"configure the second", configure, RG_GRID_HIERARCHICAL, 1},
+    {"insert far away", insert_one, 100000, 10},
+    {"move many", move_many, 50, 1},
+    {"remove", remove_one, 0, 20},
+    {"remove many", remove_many, MANY, 1},
+    {"insert after removes", insert_one, 10, 60},
+    {"configure", configure, RG_GRID_HIERARCHICAL, 1},
+    {"destroy a grid", destroy_spare_grid, 0, 1},
+};
+
+/* -------------------------------------------------------------------------------------------- the harness */
+
+/* What can be seen of the scene. Tracing must not allocate. */
+static void look(scenario *s, probe *p) {
+    rg_ray rays[PROBES];
+    uint64_t calls = s->memory.calls;
+    rg_scene_report report = {.size = sizeof report};
+    memset(p, 0, sizeof *p);
+    if (!s->scene) return;
+    for (int i = 0; i < PROBES; i++) {
+        const double from[3] = {60 * cos(i), 60 * sin(i), 40 * cos(1.3 * i)};
+        const double to[3] = {-from[0] + i % 5, -from[1] + i % 7, -from[2]};
+        rays[i] = rg_ray_from(from, to);
+    }
+    if (rg_scene_trace(s->scene, rays, p->hits, PROBES) != RG_OK) fail("trace", 0, rg_error_message());
+    if (rg_scene_stats(s->scene, &report) != RG_OK) fail("stats", 0, rg_error_message());
+    p->objects = report.objects;
+    p->slots = report.slots;
+    p->grids = report.grids;
+    if (s->memory.calls != calls) fail("trace", 0, "it allocated");
+}
+
+static void finish(scenario *s) {
+    if (rg_scene_destroy(&s->scene) != RG_OK) fail("destroy", 0, rg_error_message());
+    bool own = s->shapes[OWN] != NULL;
+    for (int i = 0; i < SHAPES; i++) rg_shape_release(&s->shapes[i]);
+    if (s->own_destroyed != own) fail("release", 0, "the user shape's destroy was not called once");
+    if (s->memory.live_blocks != 0 || s->memory.live_bytes != 0) fail("destroy", 0, "memory is left");
+}
+
+static probe *baseline; /* what is seen after each turn if nothing fails */
+
+static void demand_same(const probe *seen, const probe *want, const step *what, uint32_t turn, const char *why) {
+    if (memcmp(seen, want, sizeof *seen) == 0) return;
+    fprintf(stderr, "objects %" PRIu64 " for %" PRIu64 ", slots %" PRIu64 " for %" PRIu64 ", grids %" PRIu32
+            " for %" PRIu32 "\n", seen->objects, want->objects, seen->slots, want->slots, seen->grids, want->grids);
+    for (int i = 0; i < PROBES; i++) {
+        const rg_hit *a = &seen->hits[i], *b = &want->hits[i];
+        if (memcmp(a, b, sizeof *a) == 0) continue;
+        fprintf(stderr, "ray %d: object %" PRIx64 " t %a, not object %" PRIx64 " t %a\n", i, a->object, a->t,
+                b->object, b->t);
+    }
+    fail(what->name, turn, why);
+}
+
+/* One turn: if it fails, nothing may have changed; then memory is there again and it must work. */
+static void run_turn(scenario *s, const step *what, uint32_t turn, const probe *before, const probe *after) {
+    static probe seen;
+    uint64_t failed = s->memory.failed;
+    rg_result result = what->run(s, what->argument);
+    if (result != RG_OK) {
+        if (result != RG_OUT_OF_MEMORY) fail(what->name, turn, rg_result_name(result));
+        if (s->memory.failed == failed) fail(what->name, turn, "out of memory, but no allocation failed");
+        if (rg_error_message()[0] == 0) fail(what->name, turn, "no message");
+        look(s, &seen);
+        demand_same(&seen, before, what, turn, "it failed and changed the scene");
+        s->memory.fail_at = 0;
+        result = what->run(s, what->argument);
+        if (result != RG_OK) fail(what->name, turn, "it fails again with memory there");
+    }
+    look(s, &seen);
+    demand_same(&seen, after, what, turn, "the scene is not as without a failure");
+}
+
+/* Returns the number of allocations. */
+static uint64_t run(uint64_t fail_at, bool ever_after) {
+    static scenario s;
+    memset(&s, 0, sizeof s);
+    s.memory.fail_at = fail_at;
+    s.memory.fail_ever_after = ever_after;
+    size_t turns = 0;
+    for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) {
+        for (uint32_t turn = 0; turn < STEPS[i].repeat; turn++, turns++) {
+            run_turn(&s, &STEPS[i], turn, &baseline[turns], &baseline[turns + 1]);
+        }
+    }
+    finish(&s);
+    return s.memory.calls;
+}
+
+static uint64_t make_baseline(void) {
+    static scenario s;
+    size_t turns = 0, made = 0;
+    for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) turns += STEPS[i].repeat;
+    baseline = calloc(turns + 1, sizeof *baseline);
+    if (!baseline) fail("the test", 0, "out of memory");
+    for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) {
+        for (uint32_t turn = 0; turn < STEPS[i].repeat; turn++) {
+            rg_result result = STEPS[i].run(&s, STEPS[i].argument);
+            if (result != RG_OK) fail(STEPS[i].name, turn, rg_error_message());
+            look(&s, &baseline[++made]);
+        }
+    }
+    finish(&s);
+    return s.memory.calls;
+}
+
+int main(void) {
+    uint64_t calls = make_baseline();
+    printf("%" PRIu64 " allocations, each fails once and once with all after it\n", calls);
+    if (run(0, false) != calls) fail("the test", 0, "the same steps make another number of allocations");
+    for (uint64_t n = 1; n <= calls; n++) {
+        run(n, false);
+        run(n, true);
+    }
+    free(baseline);
+    return EXIT_SUCCESS;
+}
