@@ -8,9 +8,13 @@
 enum { MESSAGE_SIZE = 320 };
 
 static __thread char message[MESSAGE_SIZE];
+static __thread bool is_quiet;
+
+void rgi_fail_quietly(bool quiet) { is_quiet = quiet; }
 
 rg_result rgi_fail(rg_result result, const char *format, ...) {
     va_list arguments;
+    if (is_quiet) return result;
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);

@@ -5,6 +5,8 @@
 
 #include <raygrid/base.h>
 
+#include <stdbool.h>
+
 #if defined(__GNUC__)
 #define RGI_PRINTF(f, a) __attribute__((format(printf, f, a)))
 #else
@@ -13,6 +15,9 @@
 
 /** Keeps the message for rg_error_message and returns `result`, so that a check reads `return rgi_fail(...)`. */
 rg_result rgi_fail(rg_result result, const char *format, ...) RGI_PRINTF(2, 3);
+
+/** While this thread is quiet, failures leave the message alone: for what a call tries but does not need. */
+void rgi_fail_quietly(bool quiet);
 
 /** Puts text in front of the message that is kept, for instance which of many objects it is about. */
 void rgi_fail_prefix(const char *format, ...) RGI_PRINTF(1, 2);

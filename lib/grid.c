@@ -363,7 +363,10 @@ static void tell(const rgi_grid *grid, const char *what, const char *why) {
 /* Rebuilds by rule. Without memory the old cells go on; the next try comes when as much has changed again. */
 static void rebuild_by_rule(rgi_grid *grid, bool given, const char *why) {
     bool first = !grid->cells.level_count;
-    if (rebuild(grid, &grid->config, given) == RG_OK) {
+    rgi_fail_quietly(true);
+    rg_result result = rebuild(grid, &grid->config, given);
+    rgi_fail_quietly(false);
+    if (result == RG_OK) {
         grid->rebuilds += !first;
         tell(grid, first ? "built" : "rebuilt", why);
     } else {

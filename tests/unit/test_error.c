@@ -46,12 +46,22 @@ START_TEST(long_messages_are_cut) {
 }
 END_TEST
 
+START_TEST(what_a_call_only_tries_leaves_no_message) {
+    rgi_fail(RG_INVALID_VALUE, "first");
+    rgi_fail_quietly(true);
+    ck_assert_int_eq(rgi_fail(RG_OUT_OF_MEMORY, "second"), RG_OUT_OF_MEMORY);
+    rgi_fail_quietly(false);
+    ck_assert_str_eq(rg_error_message(), "first");
+}
+END_TEST
+
 Suite *unit_suite(void) {
     Suite *suite = suite_create("error");
     TCase *tests = tcase_create("error");
     tcase_add_test(tests, names);
     tcase_add_test(tests, message_belongs_to_its_thread);
     tcase_add_test(tests, long_messages_are_cut);
+    tcase_add_test(tests, what_a_call_only_tries_leaves_no_message);
     suite_add_tcase(suite, tests);
     return suite;
 }

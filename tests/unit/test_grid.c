@@ -139,6 +139,44 @@ START_TEST(large_objects_keep_cells_few) {
 }
 END_TEST
 
+static int blocks_left;
+
+static void *scarce_allocate(void *user, size_t size, size_t alignment) {
+    void *block = NULL;
+    (void)user;
+    return blocks_left-- > 0 && posix_memalign(&block, alignment, size) == 0 ? block : NULL;
+}
+
+static void scarce_release(void *user, void *block, size_t size, size_t alignment) {
+    (void)user, (void)size, (void)alignment;
+    free(block);
+}
+
+/* A rebuild that finds no memory fails nobody: the call that needed it not succeeds and leaves no message; later it is
+ * tried again. */
+START_TEST(rebuilds_wait_for_memory) {
+    rg_grid_config config;
+    rgi_grid grid;
+    const rg_allocator scarce = {NULL, scarce_allocate, scarce_release};
+    char before[400];
+    blocks_left = 1000;
+    rgi_memory_init(&memory, &scarce);
+    ck_assert_int_eq(rgi_grid_config_read(&config, NULL), RG_OK);
+    ck_assert_int_eq(rgi_grid_init(&grid, &memory, &config, tell, NULL), RG_OK);
+    for (int i = 0; i < 8; i++) insert(&grid, i, i, i, 0.5);
+    strcpy(before, rg_error_message());
+    blocks_left = 0;
+    insert(&grid, 8, 8, 8, 0.5);
+    ck_assert_uint_eq(grid.cells.level_count, 0);
+    ck_assert_uint_eq(grid.member_count, 9);
+    ck_assert_str_eq(rg_error_message(), before);
+    blocks_left = 1000;
+    for (int i = 0; i < 40; i++) insert(&grid, i, 0, 0, 0.5);
+    ck_assert_uint_gt(grid.cells.level_count, 0);
+    done(&grid);
+}
+END_TEST
+
 START_TEST(flat_thin_and_single) {
     const double extents[][3] = {{100, 100, 0}, {100, 0, 0}, {0, 0, 0}, {1e-30, 1, 1e30}};
     for (int kind = RG_GRID_UNIFORM; kind <= RG_GRID_HIERARCHICAL; kind++) {
@@ -241,6 +279,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, resolution_follows_the_number);
     tcase_add_test(tests, boxes_shrink_again);
     tcase_add_test(tests, large_objects_keep_cells_few);
+    tcase_add_test(tests, rebuilds_wait_for_memory);
     tcase_add_test(tests, flat_thin_and_single);
     tcase_add_test(tests, infinite_members_leave_the_box_alone);
     tcase_add_test(tests, configurations);
