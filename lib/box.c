@@ -9,10 +9,10 @@ typedef struct crossing {
 } crossing;
 
 /*
- * The slab test. Divisions, not products with a reciprocal: a correctly rounded quotient depends on the exact ratio only,
- * so planes that a ray meets at the same place in exact arithmetic (at an edge, a corner) give the same t. A zero
- * component of either sign takes no part except that the origin must be between the planes, which are part of the box.
- * Strict comparisons keep the lowest face where several meet.
+ * The slab test. Divisions, not products with a reciprocal: a correctly rounded quotient depends on the exact ratio
+ * only, so planes that a ray meets at the same place in exact arithmetic (at an edge, a corner) give the same t. A
+ * zero component of either sign takes no part except that the origin must be between the planes, which are part of
+ * the box. Strict comparisons keep the lowest face where several meet.
  */
 static bool cross(const double lo[3], const double hi[3], const double origin[3], const double direction[3],
                   crossing *out) {

@@ -35,8 +35,8 @@ static bool cylinder_roots(const rgi_capsule *capsule, const double m[3], const 
 /*
  * The capsule is the union of the cylinder between its ends and a ball at each. A line enters the capsule where it
  * enters the endless cylinder if that place lies between the ends, else where it enters the ball of the end beyond
- * which it lies; it leaves likewise. For in the half space beyond an end, the capsule is that end's half ball, and a line
- * that crosses the end's plane inside the cylinder does so inside the ball.
+ * which it lies; it leaves likewise. For in the half space beyond an end, the capsule is that end's half ball, and a
+ * line that crosses the end's plane inside the cylinder does so inside the ball.
  */
 bool rgi_capsule_intersect(const rgi_capsule *capsule, const rgi_local_ray *ray, rgi_candidate *candidate) {
     const double *d = ray->direction;

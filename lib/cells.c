@@ -7,7 +7,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Beyond this many tiles from home an object counts as unbounded: far inside what int32_t holds and double resolves. */
+/* Beyond this many tiles from home an object counts as unbounded: far inside what int32_t holds and double resolves.
+ */
 #define FARTHEST_TILE 1073741824.0
 
 /* ---------------------------------------------------------------------------------------------- the levels */
@@ -70,7 +71,8 @@ rg_result rgi_cells_make(rgi_cells *cells, rgi_memory *memory, bool hierarchical
 /* --------------------------------------------------------------------------------------------- placements */
 
 /* The tile and the cell of a coordinate; false if it is too far away. Cells are counted inside the tile. */
-static bool locate(const rgi_cells *cells, const rgi_level *level, int axis, double x, int32_t *tile, uint32_t *cell) {
+static bool locate(const rgi_cells *cells, const rgi_level *level, int axis, double x, int32_t *tile,
+                   uint32_t *cell) {
     double inside = x - cells->base[axis];
     *tile = 0;
     if (!(inside >= 0 && inside < cells->extent[axis])) {
@@ -104,9 +106,9 @@ static uint64_t cell_span(const rgi_cells *cells, const rgi_placement *p, int ax
 }
 
 /*
- * Boxes are widened by 2^-36 of the physical box and 2^-49 of their coordinates. The first covers what a walk inside a tile
- * rounds (some 2^-50 of the tile, lib/walk.c), the second what base + k * extent rounds; so a ray that meets an object
- * looks into a cell in which it is listed, on whichever side of a wall rounding puts the two.
+ * Boxes are widened by 2^-36 of the physical box and 2^-49 of their coordinates. The first covers what a walk inside
+ * a tile rounds (some 2^-50 of the tile, lib/walk.c), the second what base + k * extent rounds; so a ray that meets
+ * an object looks into a cell in which it is listed, on whichever side of a wall rounding puts the two.
  */
 void rgi_cells_place(const rgi_cells *cells, const double lo[3], const double hi[3], rgi_placement *p) {
     double from[3], to[3];
@@ -173,8 +175,8 @@ static uint32_t tile_index(rgi_cells *cells, const int32_t at[3]) {
     return index;
 }
 
-/* Deletion without tombstones: what follows in the run moves up unless it would pass its own first place. D. E. Knuth,
- * TAOCP vol. 3, section 6.4, algorithm R. */
+/* Deletion without tombstones: what follows in the run moves up unless it would pass its own first place. D. E.
+ * Knuth, TAOCP vol. 3, section 6.4, algorithm R. */
 static void drop_tile(rgi_cells *cells, uint32_t index) {
     const rgi_tile *tile = rgi_slots_at(&cells->tiles, index);
     uint32_t mask = cells->table_room - 1, hole = rgi_cells_table_place(cells, tile->at), place = hole;
@@ -201,8 +203,7 @@ void rgi_cells_need(const rgi_cells *cells, const rgi_placement *p, uint64_t *en
     int32_t at[3];
     for (at[0] = p->tile[0][0]; at[0] <= p->tile[1][0]; at[0]++)
         for (at[1] = p->tile[0][1]; at[1] <= p->tile[1][1]; at[1]++)
-            for (at[2] = p->tile[0][2]; at[2] <= p->tile[1][2]; at[2]++)
-                *tiles += is_empty(cells, at);
+            for (at[2] = p->tile[0][2]; at[2] <= p->tile[1][2]; at[2]++) *tiles += is_empty(cells, at);
 }
 
 static rg_result reserve_table(rgi_cells *cells, uint64_t tiles) {

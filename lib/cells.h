@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Cells: the storage of a grid. Levels of cells over one physical box, addressed modulo the box, with linked lists of
- * entries. E. Reinhard, B. Smits, C. Hansen, "Dynamic Acceleration Structures for Interactive Ray Tracing" (2000). The uniform
- * kind is the hierarchical one with one level.
+ * entries. E. Reinhard, B. Smits, C. Hansen, "Dynamic Acceleration Structures for Interactive Ray Tracing" (2000).
+ * The uniform kind is the hierarchical one with one level.
  *
- * Space is tiled by copies of the physical box; tile k (three integers) starts at base + k * extent. Inside a tile, places
- * count from its corner and cells from 0, so nothing that is computed there knows how far away from the origin the
- * tile is. An entry says: this object overlaps this cell in this tile.
+ * Space is tiled by copies of the physical box; tile k (three integers) starts at base + k * extent. Inside a tile,
+ * places count from its corner and cells from 0, so nothing that is computed there knows how far away from the origin
+ * the tile is. An entry says: this object overlaps this cell in this tile.
  *
  * Cells know boxes and indices. They do not know shapes, objects or the rules of a grid.
  */
@@ -72,7 +72,8 @@ typedef struct rgi_placement {
     uint32_t cell[2][3];
 } rgi_placement;
 
-/** The corner of a tile along an axis. Rounded, but the same wherever it is asked for: places in the tile count from it. */
+/** The corner of a tile along an axis. Rounded, but the same wherever it is asked for: places in the tile count from
+ * it. */
 static inline double rgi_tile_base(const rgi_cells *cells, int axis, double tile) {
     return cells->base[axis] + tile * cells->extent[axis];
 }
@@ -81,8 +82,9 @@ static inline double rgi_tile_base(const rgi_cells *cells, int axis, double tile
 void rgi_cells_init(rgi_cells *cells, rgi_memory *memory);
 
 /**
- * Cells over the box from base, `count` of them along each axis at the finest level (for the hierarchical kind powers of two,
- * and coarser levels up to one cell). RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED; *cells is then as after rgi_cells_init.
+ * Cells over the box from base, `count` of them along each axis at the finest level (for the hierarchical kind powers
+ * of two, and coarser levels up to one cell). RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED; *cells is then as after
+ * rgi_cells_init.
  */
 rg_result rgi_cells_make(rgi_cells *cells, rgi_memory *memory, bool hierarchical, const double base[3],
                          const double extent[3], const uint32_t count[3]);

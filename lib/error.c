@@ -10,7 +10,9 @@ enum { MESSAGE_SIZE = 320 };
 static __thread char message[MESSAGE_SIZE];
 static __thread bool is_quiet;
 
-void rgi_fail_quietly(bool quiet) { is_quiet = quiet; }
+void rgi_fail_quietly(bool quiet) {
+    is_quiet = quiet;
+}
 
 rg_result rgi_fail(rg_result result, const char *format, ...) {
     va_list arguments;
@@ -34,20 +36,32 @@ void rgi_fail_prefix(const char *format, ...) {
     message[shift + length] = '\0';
 }
 
-const char *rg_error_message(void) { return message; }
+const char *rg_error_message(void) {
+    return message;
+}
 
 const char *rg_result_name(rg_result result) {
     switch (result) {
-    case RG_OK: return "RG_OK";
-    case RG_INVALID_ARGUMENT: return "RG_INVALID_ARGUMENT";
-    case RG_INVALID_VALUE: return "RG_INVALID_VALUE";
-    case RG_INVALID_ID: return "RG_INVALID_ID";
-    case RG_LIMIT_EXCEEDED: return "RG_LIMIT_EXCEEDED";
-    case RG_OUT_OF_MEMORY: return "RG_OUT_OF_MEMORY";
-    case RG_OUT_OF_THREADS: return "RG_OUT_OF_THREADS";
-    case RG_BUSY: return "RG_BUSY";
-    case RG_CALLBACK_FAILED: return "RG_CALLBACK_FAILED";
-    default: return "unknown";
+    case RG_OK:
+        return "RG_OK";
+    case RG_INVALID_ARGUMENT:
+        return "RG_INVALID_ARGUMENT";
+    case RG_INVALID_VALUE:
+        return "RG_INVALID_VALUE";
+    case RG_INVALID_ID:
+        return "RG_INVALID_ID";
+    case RG_LIMIT_EXCEEDED:
+        return "RG_LIMIT_EXCEEDED";
+    case RG_OUT_OF_MEMORY:
+        return "RG_OUT_OF_MEMORY";
+    case RG_OUT_OF_THREADS:
+        return "RG_OUT_OF_THREADS";
+    case RG_BUSY:
+        return "RG_BUSY";
+    case RG_CALLBACK_FAILED:
+        return "RG_CALLBACK_FAILED";
+    default:
+        return "unknown";
     }
 }
 

@@ -34,8 +34,8 @@ static inline double rgi_two_product(double a, double b, double *error) {
 }
 
 /**
- * a - b + t * d, with an error of 2^-52 of the result and 2^-104 of the largest term: where the three cancel, as they do
- * when a ray's origin `a` far away is moved near a point `b` that it passes, nothing is lost.
+ * a - b + t * d, with an error of 2^-52 of the result and 2^-104 of the largest term: where the three cancel, as they
+ * do when a ray's origin `a` far away is moved near a point `b` that it passes, nothing is lost.
  */
 static inline double rgi_rebase(double a, double b, double t, double d) {
     double e1, e2, e3;

@@ -55,7 +55,9 @@ static void counts_for_resolution(rg_grid_kind kind, const double extent[3], uin
     }
 }
 
-static double cells_of(const uint32_t count[3]) { return (double)count[0] * count[1] * count[2]; }
+static double cells_of(const uint32_t count[3]) {
+    return (double)count[0] * count[1] * count[2];
+}
 
 rg_result rgi_grid_config_read(rg_grid_config *config, const rg_grid_config *given) {
     rg_result result = rgi_struct_read(config, sizeof *config, CONFIG_LEAST, given, "rg_grid_config");
@@ -68,13 +70,14 @@ rg_result rgi_grid_config_read(rg_grid_config *config, const rg_grid_config *giv
         return rgi_fail(RG_INVALID_VALUE, "resolution is %u, above %d", c->resolution, MAX_RESOLUTION);
     if (c->rebuild_factor == 0) c->rebuild_factor = default_config.rebuild_factor;
     if (c->rebuild_factor != RG_REBUILD_NEVER && !(c->rebuild_factor >= 1 && c->rebuild_factor < INFINITY))
-        return rgi_fail(RG_INVALID_VALUE, "rebuild_factor is %g, neither >= 1 nor RG_REBUILD_NEVER", c->rebuild_factor);
+        return rgi_fail(RG_INVALID_VALUE, "rebuild_factor is %g, neither >= 1 nor RG_REBUILD_NEVER",
+                        c->rebuild_factor);
     if (!has_box(c)) return RG_OK;
     double extent[3];
     for (int a = 0; a < 3; a++) {
         if (!(fabs(c->lo[a]) <= RG_COORDINATE_MAX && fabs(c->hi[a]) <= RG_COORDINATE_MAX && c->lo[a] < c->hi[a]))
-            return rgi_fail(RG_INVALID_VALUE, "the box of the grid goes from lo[%d] = %g to hi[%d] = %g", a, c->lo[a], a,
-                            c->hi[a]);
+            return rgi_fail(RG_INVALID_VALUE, "the box of the grid goes from lo[%d] = %g to hi[%d] = %g", a, c->lo[a],
+                            a, c->hi[a]);
         extent[a] = c->hi[a] - c->lo[a];
         if (extent[a] < RG_RADIUS_MIN)
             return rgi_fail(RG_INVALID_VALUE, "the box of the grid is %g wide on axis %d, less than %g", extent[a], a,
@@ -83,13 +86,15 @@ rg_result rgi_grid_config_read(rg_grid_config *config, const rg_grid_config *giv
     uint32_t count[3];
     counts_for_resolution(c->kind, extent, c->resolution ? c->resolution : 1, count);
     if (cells_of(count) > MAX_CELLS)
-        return rgi_fail(RG_LIMIT_EXCEEDED, "resolution %u gives %g cells, more than 2^28", c->resolution, cells_of(count));
+        return rgi_fail(RG_LIMIT_EXCEEDED, "resolution %u gives %g cells, more than 2^28", c->resolution,
+                        cells_of(count));
     return RG_OK;
 }
 
 /* ---------------------------------------------------------------------------------------- making the cells */
 
-/* The side of cubic cells so that so many fit in the box; sides of the box that are no longer than a cell do not count. */
+/* The side of cubic cells so that so many fit in the box; sides of the box that are no longer than a cell do not
+ * count. */
 static double automatic_size(const double sides[3], double wanted) {
     double e[3] = {sides[0], sides[1], sides[2]};
     for (int i = 0; i < 2; i++) {
@@ -138,7 +143,8 @@ static void fitting_box(const double lo[3], const double hi[3], double base[3], 
     }
 }
 
-static bool make_box(const rgi_grid *grid, const rg_grid_config *config, bool given, double base[3], double extent[3]) {
+static bool make_box(const rgi_grid *grid, const rg_grid_config *config, bool given, double base[3],
+                     double extent[3]) {
     if (given) {
         rgi_copy(config->lo, base);
         rgi_sub(config->hi, config->lo, extent);
@@ -245,7 +251,8 @@ static rg_result rebuild(rgi_grid *grid, const rg_grid_config *config, bool give
 
 /* ------------------------------------------------------------------------------------------------- lifetime */
 
-rg_result rgi_grid_init(rgi_grid *grid, rgi_memory *memory, const rg_grid_config *config, rg_log log, void *log_user) {
+rg_result rgi_grid_init(rgi_grid *grid, rgi_memory *memory, const rg_grid_config *config, rg_log log,
+                        void *log_user) {
     memset(grid, 0, sizeof *grid);
     grid->memory = memory;
     grid->config = *config;
@@ -354,8 +361,8 @@ void rgi_grid_remove(rgi_grid *grid, uint32_t member) {
 static void tell(const rgi_grid *grid, const char *what, const char *why) {
     char line[160];
     if (!grid->log) return;
-    snprintf(line, sizeof line, "grid %s (%s): %" PRIu64 " objects, %" PRIu32 " x %" PRIu32 " x %" PRIu32 " cells", what, why,
-             grid->member_count, grid->cells.levels[0].count[0], grid->cells.levels[0].count[1],
+    snprintf(line, sizeof line, "grid %s (%s): %" PRIu64 " objects, %" PRIu32 " x %" PRIu32 " x %" PRIu32 " cells",
+             what, why, grid->member_count, grid->cells.levels[0].count[0], grid->cells.levels[0].count[1],
              grid->cells.levels[0].count[2]);
     grid->log(grid->log_user, line);
 }
@@ -387,8 +394,9 @@ static void settle_count(rgi_grid *grid) {
 }
 
 /*
- * The logical box only grows as long as objects change. Once as many changes as there are members have been made, making it
- * exact costs less than they did; if it then turns out to be far smaller than the physical box, that is made anew.
+ * The logical box only grows as long as objects change. Once as many changes as there are members have been made,
+ * making it exact costs less than they did; if it then turns out to be far smaller than the physical box, that is
+ * made anew.
  */
 static void settle_box(rgi_grid *grid) {
     double factor = grid->config.rebuild_factor;

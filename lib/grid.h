@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A grid: the boxes of its members stored in cells, the logical box, and the rules by which the cells are made anew. A
- * grid knows boxes and indices; what an index means is the scene's business.
+ * A grid: the boxes of its members stored in cells, the logical box, and the rules by which the cells are made anew.
+ * A grid knows boxes and indices; what an index means is the scene's business.
  */
 #ifndef RAYGRID_LIB_GRID_H
 #define RAYGRID_LIB_GRID_H
@@ -28,13 +28,13 @@ typedef struct rgi_grid {
     rgi_cells cells;
     rgi_slots members;
     uint64_t member_count;
-    double lo[3], hi[3];   /* the logical box: holds all members but the infinite */
-    uint64_t built_count;  /* members when the cells were made */
-    uint64_t changes;      /* inserts, moves and removes since the logical box was last made exact */
-    double physical;       /* diagonal of the physical box */
-    bool box_given;        /* the physical box is that of the configuration */
-    bool grown;            /* the logical box has grown since the rules were last applied */
-    uint64_t retry_in;     /* changes until a rebuild that found no memory is tried again */
+    double lo[3], hi[3];  /* the logical box: holds all members but the infinite */
+    uint64_t built_count; /* members when the cells were made */
+    uint64_t changes;     /* inserts, moves and removes since the logical box was last made exact */
+    double physical;      /* diagonal of the physical box */
+    bool box_given;       /* the physical box is that of the configuration */
+    bool grown;           /* the logical box has grown since the rules were last applied */
+    uint64_t retry_in;    /* changes until a rebuild that found no memory is tried again */
     uint64_t rebuilds;
 } rgi_grid;
 
@@ -46,8 +46,8 @@ rg_result rgi_grid_init(rgi_grid *grid, rgi_memory *memory, const rg_grid_config
 void rgi_grid_free(rgi_grid *grid);
 
 /**
- * Adds a member; *member is its record. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED: nothing has changed. Cost: the cells that the
- * box overlaps.
+ * Adds a member; *member is its record. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED: nothing has changed. Cost: the cells
+ * that the box overlaps.
  */
 rg_result rgi_grid_insert(rgi_grid *grid, uint32_t object, const double lo[3], const double hi[3], uint32_t *member);
 
@@ -71,7 +71,8 @@ void rgi_grid_move_inside(rgi_grid *grid, uint32_t member, const double lo[3], c
 
 void rgi_grid_remove(rgi_grid *grid, uint32_t member);
 
-/** After changes: rebuilds if the rules ask for it. Without memory the old cells stay and serve; later it is tried again. */
+/** After changes: rebuilds if the rules ask for it. Without memory the old cells stay and serve; later it is tried
+ * again. */
 void rgi_grid_settle(rgi_grid *grid);
 
 /** Rebuilds now, with a box that fits. RG_OUT_OF_MEMORY: nothing has changed. */

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What shapes are asked: where a ray meets them, in their local frame. Shapes know nothing of objects, scenes or grids.
+ * What shapes are asked: where a ray meets them, in their local frame. Shapes know nothing of objects, scenes or
+ * grids.
  *
- * The local ray's origin may have been moved along the ray by `shift` to come near the shape. All t that leave a shape, and
- * t_min and t_max, count from the unmoved origin; a root found in the moved frame becomes t = shift + root. So whether a
- * hit is in range is decided on the same number for every shape, grid and order of traversal.
+ * The local ray's origin may have been moved along the ray by `shift` to come near the shape. All t that leave a
+ * shape, and t_min and t_max, count from the unmoved origin; a root found in the moved frame becomes t = shift +
+ * root. So whether a hit is in range is decided on the same number for every shape, grid and order of traversal.
  */
 #ifndef RAYGRID_LIB_INTERSECT_H
 #define RAYGRID_LIB_INTERSECT_H
@@ -40,7 +41,8 @@ typedef struct rgi_local_ray {
     void *context;
 } rgi_local_ray;
 
-/** Whether a hit at moved-frame root `root` on side `side` is in range; fills candidate->t. The filter comes after. */
+/** Whether a hit at moved-frame root `root` on side `side` is in range; fills candidate->t. The filter comes after.
+ */
 static inline bool rgi_in_range(const rgi_local_ray *ray, double root, uint32_t side, rgi_candidate *candidate) {
     candidate->t = ray->shift + root;
     return candidate->t >= ray->t_min && candidate->t <= ray->t_max && (ray->sides & side) != 0;
@@ -51,8 +53,8 @@ static inline bool rgi_accepted(const rgi_local_ray *ray, const rgi_candidate *c
 }
 
 /*
- * Each finds the hit with the smallest t in range (any hit, if ray->any), fills all of *candidate and returns true; or
- * returns false, with *candidate undefined.
+ * Each finds the hit with the smallest t in range (any hit, if ray->any), fills all of *candidate and returns true;
+ * or returns false, with *candidate undefined.
  */
 bool rgi_sphere_intersect(double radius, const rgi_local_ray *ray, rgi_candidate *candidate);
 bool rgi_box_intersect(const double lo[3], const double hi[3], const rgi_local_ray *ray, rgi_candidate *candidate);

@@ -28,8 +28,10 @@ rg_result rgi_memory_init(rgi_memory *memory, const rg_allocator *allocator) {
         memory->allocator.release = default_release;
         return RG_OK;
     }
-    if (!allocator->allocate) return rgi_fail(RG_INVALID_ARGUMENT, "allocator.allocate is NULL, allocator.release is not");
-    if (!allocator->release) return rgi_fail(RG_INVALID_ARGUMENT, "allocator.release is NULL, allocator.allocate is not");
+    if (!allocator->allocate)
+        return rgi_fail(RG_INVALID_ARGUMENT, "allocator.allocate is NULL, allocator.release is not");
+    if (!allocator->release)
+        return rgi_fail(RG_INVALID_ARGUMENT, "allocator.release is NULL, allocator.allocate is not");
     memory->allocator = *allocator;
     return RG_OK;
 }

@@ -30,7 +30,8 @@ static void walk_init(walk *w, const rgi_local_ray *ray) {
     w->y = (w->z + 2) % 3;
     w->shear[0] = d[w->x] / d[w->z];
     w->shear[1] = d[w->y] / d[w->z];
-    /* A component below 2^-60 of the largest moves the ray by less than the boxes' pad over any length that matters. */
+    /* A component below 2^-60 of the largest moves the ray by less than the boxes' pad over any length that matters.
+     */
     double least = fabs(d[w->z]) * 0x1p-60;
     for (int i = 0; i < 3; i++) w->inverse[i] = 1 / (fabs(d[i]) > least ? d[i] : copysign(least, d[i]));
     w->slack = fabs(ray->shift) * 0x1p-50;
@@ -48,7 +49,9 @@ static void to_ray(const walk *w, const double vertex[3], double relative[3], do
 }
 
 /* Which side of edge a to b the ray passes. Exactly the negative for edge b to a, so neighbours never both miss. */
-static double edge(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
+static double edge(const double a[2], const double b[2]) {
+    return a[0] * b[1] - a[1] * b[0];
+}
 
 /*
  * Where the ray meets the triangle's plane; along = normal * direction. The plane form stays exact for long thin
@@ -63,8 +66,8 @@ static double plane_root(const walk *w, const double normal[3], double along, do
 }
 
 /*
- * S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection" (JCGT 2013), section 3, in double. Zero counts as
- * inside for both neighbours. Returns false for a miss; true with the root unchecked.
+ * S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection" (JCGT 2013), section 3, in double. Zero counts
+ * as inside for both neighbours. Returns false for a miss; true with the root unchecked.
  */
 static bool meets(const walk *w, const uint32_t corners[3], const double (*vertices)[3], double *root, uint32_t *side,
                   rgi_candidate *candidate) {
@@ -155,8 +158,8 @@ static rg_result copy_vertices(rgi_mesh *mesh, const rg_mesh_views *views) {
         rgi_load3(&views->vertices, i, v);
         for (int a = 0; a < 3; a++) {
             if (!(fabs(v[a]) <= RG_COORDINATE_MAX))
-                return rgi_fail(RG_INVALID_VALUE, "vertex %u has %c = %g, which is not finite or beyond %g", i, "xyz"[a],
-                                v[a], RG_COORDINATE_MAX);
+                return rgi_fail(RG_INVALID_VALUE, "vertex %u has %c = %g, which is not finite or beyond %g", i,
+                                "xyz"[a], v[a], RG_COORDINATE_MAX);
         }
     }
     return RG_OK;
@@ -169,7 +172,8 @@ static rg_result copy_triangles(rgi_mesh *mesh, const rg_mesh_views *views) {
         if (views->indices.x) rgi_load3_integer(&views->indices, i, corner);
         for (int c = 0; c < 3; c++) {
             if (corner[c] >= mesh->vertex_count)
-                return rgi_fail(RG_INVALID_VALUE, "index %" PRIu64 " of triangle %u (corner %d) is not below the %u vertices",
+                return rgi_fail(RG_INVALID_VALUE,
+                                "index %" PRIu64 " of triangle %u (corner %d) is not below the %u vertices",
                                 corner[c], i, c, mesh->vertex_count);
             mesh->triangles[i][c] = (uint32_t)corner[c];
             /* The mesh's box is that of the triangles: vertices that none uses must not make it larger. */
@@ -182,9 +186,11 @@ static rg_result copy_triangles(rgi_mesh *mesh, const rg_mesh_views *views) {
 
 static rg_result fill(rgi_mesh *mesh, const rg_mesh_views *views) {
     rgi_memory *memory = mesh->memory;
-    rg_result result = rgi_allocate(memory, mesh->vertex_count, sizeof *mesh->vertices, "a mesh's vertices", &mesh->vertices);
+    rg_result result =
+        rgi_allocate(memory, mesh->vertex_count, sizeof *mesh->vertices, "a mesh's vertices", &mesh->vertices);
     if (!result)
-        result = rgi_allocate(memory, mesh->triangle_count, sizeof *mesh->triangles, "a mesh's triangles", &mesh->triangles);
+        result = rgi_allocate(memory, mesh->triangle_count, sizeof *mesh->triangles, "a mesh's triangles",
+                              &mesh->triangles);
     if (!result) result = copy_vertices(mesh, views);
     if (!result) result = copy_triangles(mesh, views);
     if (!result) result = rgi_mesh_build(mesh);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The tree of a mesh: binary, split where the surface area heuristic over 16 bins is least. I. Wald, "On fast Construction of
- * SAH-based Bounding Volume Hierarchies" (RT 2007), section 3.
+ * The tree of a mesh: binary, split where the surface area heuristic over 16 bins is least. I. Wald, "On fast
+ * Construction of SAH-based Bounding Volume Hierarchies" (RT 2007), section 3.
  */
 #include "mesh.h"
 #include "vec.h"
@@ -22,7 +22,7 @@ typedef struct bin {
 } bin;
 
 typedef struct split {
-    int axis; /* -1: none found */
+    int axis;  /* -1: none found */
     double at; /* between the centres */
     double cost;
 } split;
@@ -33,7 +33,9 @@ typedef struct part {
 } part;
 
 /* Twice the middle, so that nothing is rounded but the sum. */
-static double centre(const item *it, int axis) { return it->lo[axis] + it->hi[axis]; }
+static double centre(const item *it, int axis) {
+    return it->lo[axis] + it->hi[axis];
+}
 
 static double half_area(const double lo[3], const double hi[3]) {
     double d[3];
@@ -112,8 +114,8 @@ static uint32_t partition(item *items, uint32_t count, const split *s) {
 }
 
 /*
- * Boxes are padded by 2^-40 of the largest coordinate. The tests of boxes and triangles are rounded: with the ray's origin
- * at most 2^7 radii away (lib/object.c) to 2^-45 of that size; so a ray that meets a triangle meets its boxes.
+ * Boxes are padded by 2^-40 of the largest coordinate. The tests of boxes and triangles are rounded: with the ray's
+ * origin at most 2^7 radii away (lib/object.c) to 2^-45 of that size; so a ray that meets a triangle meets its boxes.
  */
 static void box_of_items(const item *items, uint32_t count, double pad, rgi_mesh_node *node) {
     rgi_empty_box(node->lo, node->hi);

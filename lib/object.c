@@ -41,21 +41,23 @@ bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3
 }
 
 /*
- * Beyond this many radii the ray's origin is first moved along the ray to the point nearest to the object: then what rounding
- * makes of the test depends on the size of the object, not on its distance. Nearer by, an origin's own bits are best.
+ * Beyond this many radii the ray's origin is first moved along the ray to the point nearest to the object: then what
+ * rounding makes of the test depends on the size of the object, not on its distance. Nearer by, an origin's own bits
+ * are best.
  */
 enum { NEAR = 64 };
 
 /*
- * Whether a ray passes the ball around the object's position by so much that no rounding matters: the distance squared
- * (times dd: no division for the many that pass) has an error of some 2^-50 of oo, and the ball gets 2^-8 more radius.
+ * Whether a ray passes the ball around the object's position by so much that no rounding matters: the distance
+ * squared (times dd: no division for the many that pass) has an error of some 2^-50 of oo, and the ball gets 2^-8
+ * more radius.
  */
 static bool passes(double oo, double b, double reach, const rgi_ray *ray) {
     return oo * ray->dd - b * b > (reach * reach * (1 + 0x1p-8) + oo * 0x1p-40) * ray->dd;
 }
 
-bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, rgi_local_ray *local,
-                          rgi_candidate *candidate) {
+bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray,
+                          rgi_local_ray *local, rgi_candidate *candidate) {
     double oc[3];
     rgi_sub(ray->origin, object->position, oc);
     double oo = rgi_dot(oc, oc), b = rgi_dot(oc, ray->direction);

@@ -24,8 +24,8 @@ typedef struct rgi_object {
 } rgi_object;
 
 /**
- * A ray as traces use it: the direction scaled by 2^-exponent so that its largest component is in [1, 2), and t_min and
- * t_max by 2^exponent. Scaling by powers of two rounds nothing, and no product below over- or underflows.
+ * A ray as traces use it: the direction scaled by 2^-exponent so that its largest component is in [1, 2), and t_min
+ * and t_max by 2^exponent. Scaling by powers of two rounds nothing, and no product below over- or underflows.
  */
 typedef struct rgi_ray {
     double origin[3];
@@ -42,13 +42,15 @@ bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3
                   uint32_t mask);
 
 /** A t of rgi_ray in units of the direction that the caller gave. */
-static inline double rgi_world_t(const rgi_ray *ray, double t) { return t * ray->to_world * ray->to_world2; }
+static inline double rgi_world_t(const rgi_ray *ray, double t) {
+    return t * ray->to_world * ray->to_world2;
+}
 
 /**
- * Where the ray meets the object. The caller has filled t_min, t_max, sides, any, accept and context of `local`; the rest
- * is set here. `linear`: the object's linear part or NULL. The answer depends on the ray and the object alone.
+ * Where the ray meets the object. The caller has filled t_min, t_max, sides, any, accept and context of `local`; the
+ * rest is set here. `linear`: the object's linear part or NULL. The answer depends on the ray and the object alone.
  */
-bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, rgi_local_ray *local,
-                          rgi_candidate *candidate);
+bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray,
+                          rgi_local_ray *local, rgi_candidate *candidate);
 
 #endif

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* A call that is being worked on, in the caller's stack. Workers that joined are counted under the pool's lock, so the
- * caller knows when the last has left and the job may vanish. */
+/* A call that is being worked on, in the caller's stack. Workers that joined are counted under the pool's lock, so
+ * the caller knows when the last has left and the job may vanish. */
 typedef struct job {
     struct job *next;
     rgi_body body;
@@ -41,7 +41,9 @@ static void work_on(job *j) {
     }
 }
 
-static bool has_work(const job *j) { return __atomic_load_n(&j->taken, __ATOMIC_RELAXED) < j->count; }
+static bool has_work(const job *j) {
+    return __atomic_load_n(&j->taken, __ATOMIC_RELAXED) < j->count;
+}
 
 static void *worker(void *argument) {
     rgi_pool *pool = argument;
@@ -91,7 +93,9 @@ void rgi_pool_run(rgi_pool *pool, uint64_t count, rgi_body body, void *context) 
     pthread_mutex_unlock(&pool->lock);
 }
 
-uint32_t rgi_pool_workers(const rgi_pool *pool) { return pool->parallel_for ? 0 : pool->workers; }
+uint32_t rgi_pool_workers(const rgi_pool *pool) {
+    return pool->parallel_for ? 0 : pool->workers;
+}
 
 void rgi_pool_destroy(rgi_pool *pool) {
     if (!pool) return;
@@ -124,7 +128,8 @@ static rg_result start_threads(rgi_pool *pool) {
                     pool->workers - 1, error);
 }
 
-rg_result rgi_pool_create(rgi_memory *memory, uint32_t workers, rg_parallel_for parallel_for, void *user, rgi_pool **out) {
+rg_result rgi_pool_create(rgi_memory *memory, uint32_t workers, rg_parallel_for parallel_for, void *user,
+                          rgi_pool **out) {
     rgi_pool *pool;
     rg_result result = rgi_allocate(memory, 1, sizeof *pool, "the pool of workers", &pool);
     if (result) return result;

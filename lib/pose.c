@@ -26,22 +26,23 @@ bool rgi_is_identity(const float matrix[9]) {
 rg_result rgi_check_position(const double position[3]) {
     for (int i = 0; i < 3; i++) {
         if (!(fabs(position[i]) <= RG_COORDINATE_MAX))
-            return rgi_fail(RG_INVALID_VALUE, "position.%c is %g, which is not finite or beyond %g", "xyz"[i], position[i],
-                            RG_COORDINATE_MAX);
+            return rgi_fail(RG_INVALID_VALUE, "position.%c is %g, which is not finite or beyond %g", "xyz"[i],
+                            position[i], RG_COORDINATE_MAX);
     }
     return RG_OK;
 }
 
 /*
  * The inverse by cofactors. Products of two floats are exact in double, so the cofactors have one rounding and the
- * determinant an error below 2^-50 of the product of the rows' lengths (Hadamard's bound on it): against 2^-40 of that
- * product, what counts as singular is decided safely.
+ * determinant an error below 2^-50 of the product of the rows' lengths (Hadamard's bound on it): against 2^-40 of
+ * that product, what counts as singular is decided safely.
  */
 rg_result rgi_linear_init(rgi_linear *linear, const float matrix[9]) {
     double rows[3][3], cofactors[3][3], lengths = 1;
     for (int i = 0; i < 9; i++) {
         if (!isfinite(matrix[i]))
-            return rgi_fail(RG_INVALID_VALUE, "linear[%d] of the pose is %g, which is not finite", i, (double)matrix[i]);
+            return rgi_fail(RG_INVALID_VALUE, "linear[%d] of the pose is %g, which is not finite", i,
+                            (double)matrix[i]);
         rows[i / 3][i % 3] = matrix[i];
     }
     for (int i = 0; i < 3; i++) {

@@ -7,11 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum {
-    MAX_WORKERS = 1024,
-    CONFIG_LEAST = sizeof(rg_scene_config),
-    REPORT_LEAST = sizeof(rg_scene_report)
-};
+enum { MAX_WORKERS = 1024, CONFIG_LEAST = sizeof(rg_scene_config), REPORT_LEAST = sizeof(rg_scene_report) };
 
 /* ------------------------------------------------------------------------------------------------ the lock */
 
@@ -31,7 +27,9 @@ void rgi_frame_push(rgi_frame *frame, const rg_scene *scene) {
     innermost = frame;
 }
 
-void rgi_frame_pop(rgi_frame *frame) { innermost = frame->outer; }
+void rgi_frame_pop(rgi_frame *frame) {
+    innermost = frame->outer;
+}
 
 void rgi_scene_begin_read(rg_scene *scene, rgi_frame *frame) {
     bool inside = innermost && rgi_scene_inside(scene);
@@ -73,8 +71,8 @@ static void lock_init(pthread_rwlock_t *lock) {
 
 /* ------------------------------------------------------------------------------------------------ lifetime */
 
-static const rg_scene_config default_config = {sizeof(rg_scene_config), 0, 0, {NULL, NULL, NULL}, NULL, NULL, NULL, NULL,
-                                               NULL};
+static const rg_scene_config default_config = {
+    sizeof(rg_scene_config), 0, 0, {NULL, NULL, NULL}, NULL, NULL, NULL, NULL, NULL};
 
 rg_result rg_scene_config_default(rg_scene_config *config, size_t size) {
     return rgi_struct_default(&default_config, sizeof default_config, CONFIG_LEAST, config, size, "rg_scene_config");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The scene: who may read and change it when, and how its parts find one another. Entry points validate, take the lock, and
- * hand on.
+ * The scene: who may read and change it when, and how its parts find one another. Entry points validate, take the
+ * lock, and hand on.
  */
 #ifndef RAYGRID_LIB_SCENE_H
 #define RAYGRID_LIB_SCENE_H
@@ -40,8 +40,8 @@ struct rg_scene {
 
 /* ------------------------------------------------------------------------------------------------ the lock */
 
-/** That this thread is at work on a scene. Lies on the stack; frames of one thread are linked, so that calls from inside a
- * callback are known for what they are. */
+/** That this thread is at work on a scene. Lies on the stack; frames of one thread are linked, so that calls from
+ * inside a callback are known for what they are. */
 typedef struct rgi_frame {
     const rg_scene *scene;
     struct rgi_frame *outer;

@@ -5,7 +5,9 @@
 
 enum { REPORT_LEAST = sizeof(rg_grid_report), GENERATIONS = 1 << 24 };
 
-rg_grid rgi_scene_grid_id(const rg_scene *scene, uint32_t index) { return scene->grids[index].generation << 8 | index; }
+rg_grid rgi_scene_grid_id(const rg_scene *scene, uint32_t index) {
+    return scene->grids[index].generation << 8 | index;
+}
 
 rg_result rgi_scene_find_grid(const rg_scene *scene, rg_grid id, uint32_t *index) {
     *index = id & (RGI_GRIDS - 1);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Insert, move and remove many objects. Each call goes over its input twice: once to check all and to add up what memory it
- * takes, then, when all of it is there, to do it. So it is done whole or not at all.
+ * Insert, move and remove many objects. Each call goes over its input twice: once to check all and to add up what
+ * memory it takes, then, when all of it is there, to do it. So it is done whole or not at all.
  */
 #include "error.h"
 #include "scene_objects.h"
@@ -102,7 +102,8 @@ static rg_result insert_all(rg_scene *scene, const rg_insert_views *views, uint6
     return result;
 }
 
-rg_result rg_scene_insert_many(rg_scene *scene, const rg_insert_views *given, uint64_t count, const rg_output *objects) {
+rg_result rg_scene_insert_many(rg_scene *scene, const rg_insert_views *given, uint64_t count,
+                               const rg_output *objects) {
     rg_insert_views views;
     rg_pose_views poses;
     rgi_frame frame;
@@ -127,8 +128,12 @@ typedef struct touched {
     uint32_t bits[RGI_GRIDS / 32];
 } touched;
 
-static void touch(touched *t, uint32_t grid) { t->bits[grid / 32] |= 1u << grid % 32; }
-static bool is_touched(const touched *t, uint32_t grid) { return t->bits[grid / 32] >> grid % 32 & 1; }
+static void touch(touched *t, uint32_t grid) {
+    t->bits[grid / 32] |= 1u << grid % 32;
+}
+static bool is_touched(const touched *t, uint32_t grid) {
+    return t->bits[grid / 32] >> grid % 32 & 1;
+}
 
 static void settle(rg_scene *scene, const touched *t) {
     for (uint32_t i = 0; i < scene->grid_places; i++) {

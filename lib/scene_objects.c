@@ -22,8 +22,7 @@ static double reach_of(const rg_shape *shape, const rgi_placing *p) {
 
 static rg_result derive(const rg_shape *shape, rgi_placing *p) {
     rg_result result = rgi_check_position(p->position);
-    if (!result)
-        result = rgi_shape_bounds(shape, p->position, p->is_linear ? p->linear.matrix : NULL, p->lo, p->hi);
+    if (!result) result = rgi_shape_bounds(shape, p->position, p->is_linear ? p->linear.matrix : NULL, p->lo, p->hi);
     if (!result) p->reach = reach_of(shape, p);
     return result;
 }
@@ -54,7 +53,8 @@ rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot) {
         const rgi_object *object = rgi_scene_object(scene, *slot);
         if (object->shape && object->generation == id >> 32) return RG_OK;
     }
-    return rgi_fail(RG_INVALID_ID, "object 0x%" PRIx64 " is %s", id, id ? "stale or none of this scene's" : "no object");
+    return rgi_fail(RG_INVALID_ID, "object 0x%" PRIx64 " is %s", id,
+                    id ? "stale or none of this scene's" : "no object");
 }
 
 /* Stores the linear part: takes a record when there is one for the first time, gives it back when it is the identity
@@ -76,7 +76,7 @@ void rgi_set_pose(rg_scene *scene, rgi_object *object, const rgi_placing *p) {
 }
 
 rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *p, uint32_t mask, uint32_t grid,
-                            rg_object *id) {
+                         rg_object *id) {
     rg_result result = rgi_slots_reserve(&scene->objects, 1);
     if (!result && p->is_linear) result = rgi_slots_reserve(&scene->linears, 1);
     if (result) return result;

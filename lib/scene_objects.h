@@ -18,12 +18,14 @@ typedef struct rgi_placing {
 rg_result rgi_place(const rg_shape *shape, const double position[3], const float matrix[9], rgi_placing *placing);
 
 /** The same for a new position of an object that keeps its linear part. */
-rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3], rgi_placing *placing);
+rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3],
+                       rgi_placing *placing);
 
 /** RG_INVALID_ID if the id is stale or was never given out; else *slot is its slot. */
 rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot);
 
-/** These change one object whole or not at all; the rules of its grid are to be applied afterwards (rgi_grid_settle). */
+/** These change one object whole or not at all; the rules of its grid are to be applied afterwards (rgi_grid_settle).
+ */
 rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *placing, uint32_t mask, uint32_t grid,
                          rg_object *id);
 rg_result rgi_move_one(rg_scene *scene, rgi_object *object, const rgi_placing *placing);

@@ -15,7 +15,8 @@
 /* Surfaces of one user-defined shape that a ray may pass through before its callback counts as broken. */
 enum { MOST_SURFACES = 1024 };
 
-/* Asks for the closest hit from local->t_min on. Returns whether there is one in range, with its side; sets ray->failed. */
+/* Asks for the closest hit from local->t_min on. Returns whether there is one in range, with its side; sets
+ * ray->failed. */
 static bool ask(const rg_user_shape *user, const rg_local_ray *local, rgi_local_ray *ray, rg_local_hit *hit,
                 uint32_t *side) {
     memset(hit, 0, sizeof *hit);
@@ -27,14 +28,16 @@ static bool ask(const rg_user_shape *user, const rg_local_ray *local, rgi_local_
     return true;
 }
 
-/* A callback knows nothing of culling and filters: where its hit does not count, it is asked for the next one beyond. */
+/* A callback knows nothing of culling and filters: where its hit does not count, it is asked for the next one beyond.
+ */
 static bool user_intersect(const rg_user_shape *user, rgi_local_ray *ray, rgi_candidate *candidate) {
     rg_local_ray local;
     rg_local_hit hit;
     uint32_t side;
     rgi_copy(ray->origin, local.origin);
     rgi_copy(ray->direction, local.direction);
-    /* Wider than the range by what is rounded here and in the callback, so that no tie is lost; rgi_in_range decides. */
+    /* Wider than the range by what is rounded here and in the callback, so that no tie is lost; rgi_in_range decides.
+     */
     local.t_min = ray->t_min - ray->shift;
     local.t_max = ray->t_max - ray->shift;
     if (isfinite(local.t_min)) local.t_min -= 0x1p-51 * (fabs(ray->t_min) + fabs(ray->shift));
@@ -62,11 +65,16 @@ static bool user_intersect(const rg_user_shape *user, rgi_local_ray *ray, rgi_ca
 
 bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidate *candidate) {
     switch (shape->kind) {
-    case RG_SHAPE_SPHERE: return rgi_sphere_intersect(shape->of.radius, ray, candidate);
-    case RG_SHAPE_BOX: return rgi_box_intersect(shape->lo, shape->hi, ray, candidate);
-    case RG_SHAPE_CAPSULE: return rgi_capsule_intersect(&shape->of.capsule, ray, candidate);
-    case RG_SHAPE_MESH: return rgi_mesh_intersect(shape->of.mesh, ray, candidate);
-    default: return user_intersect(&shape->of.user, ray, candidate);
+    case RG_SHAPE_SPHERE:
+        return rgi_sphere_intersect(shape->of.radius, ray, candidate);
+    case RG_SHAPE_BOX:
+        return rgi_box_intersect(shape->lo, shape->hi, ray, candidate);
+    case RG_SHAPE_CAPSULE:
+        return rgi_capsule_intersect(&shape->of.capsule, ray, candidate);
+    case RG_SHAPE_MESH:
+        return rgi_mesh_intersect(shape->of.mesh, ray, candidate);
+    default:
+        return user_intersect(&shape->of.user, ray, candidate);
     }
 }
 
@@ -117,7 +125,8 @@ rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], cons
             lo[i] = shape->lo[i];
             hi[i] = shape->hi[i];
             scale = infinite ? 0 : rgi_max(fabs(lo[i]), fabs(hi[i]));
-        } else if (isinf(shape->lo[0] + shape->lo[1] + shape->lo[2]) || isinf(shape->hi[0] + shape->hi[1] + shape->hi[2])) {
+        } else if (isinf(shape->lo[0] + shape->lo[1] + shape->lo[2]) ||
+                   isinf(shape->hi[0] + shape->hi[1] + shape->hi[2])) {
             return rgi_fail(RG_INVALID_VALUE, "an infinite box needs the identity as linear part of its pose");
         } else {
             posed_box(shape, matrix, i, &lo[i], &hi[i], &scale);
@@ -127,8 +136,8 @@ rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], cons
         lo[i] += position[i] - pad;
         hi[i] += position[i] + pad;
         if (!infinite && !(lo[i] >= -4 * RG_COORDINATE_MAX && hi[i] <= 4 * RG_COORDINATE_MAX))
-            return rgi_fail(RG_INVALID_VALUE, "the posed shape reaches from %c = %g to %g, which is too far", "xyz"[i], lo[i],
-                            hi[i]);
+            return rgi_fail(RG_INVALID_VALUE, "the posed shape reaches from %c = %g to %g, which is too far",
+                            "xyz"[i], lo[i], hi[i]);
     }
     return RG_OK;
 }
@@ -227,19 +236,22 @@ rg_result rg_shape_create_capsule(const rg_shape_config *config, const double a[
 }
 
 static rg_result check_mesh(const rg_mesh_views *v) {
-    rg_result result = rgi_check_view3(v->vertices.x, v->vertices.y, v->vertices.z, v->vertices.type, RGI_FLOATS, 1,
-                                       "vertices");
+    rg_result result =
+        rgi_check_view3(v->vertices.x, v->vertices.y, v->vertices.z, v->vertices.type, RGI_FLOATS, 1, "vertices");
     if (!result)
-        result = rgi_check_view3(v->indices.x, v->indices.y, v->indices.z, v->indices.type, RGI_INDICES, 0, "indices");
+        result =
+            rgi_check_view3(v->indices.x, v->indices.y, v->indices.z, v->indices.type, RGI_INDICES, 0, "indices");
     if (result) return result;
-    if (v->triangle_count == 0) return rgi_fail(RG_INVALID_VALUE, "triangle_count is 0: a mesh has a triangle at least");
+    if (v->triangle_count == 0)
+        return rgi_fail(RG_INVALID_VALUE, "triangle_count is 0: a mesh has a triangle at least");
     if (v->triangle_count >= 1u << 31)
         return rgi_fail(RG_LIMIT_EXCEEDED, "triangle_count is %" PRIu64 ", not below 2^31", v->triangle_count);
     if (v->vertex_count >= UINT32_MAX)
         return rgi_fail(RG_LIMIT_EXCEEDED, "vertex_count is %" PRIu64 ", not below 2^32 - 1", v->vertex_count);
     if (v->vertex_count == 0) return rgi_fail(RG_INVALID_VALUE, "vertex_count is 0");
     if (!v->indices.x && v->triangle_count != v->vertex_count / 3)
-        return rgi_fail(RG_INVALID_VALUE, "triangle_count is %" PRIu64 ", but %" PRIu64 " vertices without indices make %" PRIu64,
+        return rgi_fail(RG_INVALID_VALUE,
+                        "triangle_count is %" PRIu64 ", but %" PRIu64 " vertices without indices make %" PRIu64,
                         v->triangle_count, v->vertex_count, v->vertex_count / 3);
     return RG_OK;
 }

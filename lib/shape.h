@@ -24,8 +24,8 @@ struct rg_shape {
 bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidate *candidate);
 
 /**
- * The world box of the shape at a position, with a linear part or NULL for the identity: holds the posed shape with all
- * rounding counted. RG_INVALID_VALUE: beyond 4 * RG_COORDINATE_MAX, or an infinite shape with a linear part.
+ * The world box of the shape at a position, with a linear part or NULL for the identity: holds the posed shape with
+ * all rounding counted. RG_INVALID_VALUE: beyond 4 * RG_COORDINATE_MAX, or an infinite shape with a linear part.
  */
 rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const float *matrix, double lo[3],
                            double hi[3]);

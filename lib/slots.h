@@ -31,8 +31,9 @@ void rgi_slots_init(rgi_slots *slots, rgi_memory *memory, size_t record_size, co
 void rgi_slots_free(rgi_slots *slots);
 
 /**
- * Makes sure that the next `count` calls of rgi_slots_take succeed. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED (2^32 - 1 records);
- * what is taken is not touched. Cost: constant for count <= 1024, but for the chunk pointers, 8 bytes for 1024 records.
+ * Makes sure that the next `count` calls of rgi_slots_take succeed. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED (2^32 - 1
+ * records); what is taken is not touched. Cost: constant for count <= 1024, but for the chunk pointers, 8 bytes for
+ * 1024 records.
  */
 rg_result rgi_slots_reserve(rgi_slots *slots, uint64_t count);
 

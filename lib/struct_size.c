@@ -10,7 +10,8 @@ enum { LARGEST = 4096 };
 
 static rg_result check(size_t size, size_t least, const char *name) {
     if (size >= least && size <= LARGEST) return RG_OK;
-    return rgi_fail(RG_INVALID_ARGUMENT, "%s.size is %zu, not sizeof(%s), which is at least %zu", name, size, name, least);
+    return rgi_fail(RG_INVALID_ARGUMENT, "%s.size is %zu, not sizeof(%s), which is at least %zu", name, size, name,
+                    least);
 }
 
 static size_t size_field(const void *given) {
@@ -27,8 +28,9 @@ rg_result rgi_struct_read(void *known, size_t known_size, size_t least, const vo
     if (result) return result;
     for (size_t i = known_size; i < size; i++) {
         if (((const unsigned char *)given)[i] != 0)
-            return rgi_fail(RG_INVALID_ARGUMENT, "%s of %zu bytes uses a field at byte %zu that this library does not have",
-                            name, size, i);
+            return rgi_fail(RG_INVALID_ARGUMENT,
+                            "%s of %zu bytes uses a field at byte %zu that this library does not have", name, size,
+                            i);
     }
     memcpy(known, given, size < known_size ? size : known_size);
     return RG_OK;

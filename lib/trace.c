@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Queries: rays are read through views, traced one by one through the grids, and what is wanted of the hits is written.
+ * Queries: rays are read through views, traced one by one through the grids, and what is wanted of the hits is
+ * written.
  */
 #include "error.h"
 #include "exact.h"
@@ -58,8 +59,8 @@ typedef struct query {
 /* ---------------------------------------------------------------------------------------------- the hit record */
 
 /*
- * Normals go by the transposed inverse, so they stay outward under mirrors too. Where a shape is so thin for its length
- * that rounding leaves nothing of its normal, the one against the ray stands in: nothing in a hit is NaN.
+ * Normals go by the transposed inverse, so they stay outward under mirrors too. Where a shape is so thin for its
+ * length that rounding leaves nothing of its normal, the one against the ray stands in: nothing in a hit is NaN.
  */
 static void world_normal(const rgi_ray *ray, const rgi_linear *linear, const rgi_candidate *c, float out[3]) {
     double n[3];
@@ -84,9 +85,9 @@ static double frobenius(const double *m) {
 }
 
 /*
- * How far off the surface a hit may be, and a second look at it: a position is rounded to 2^-53 of its size, t to 2^-53 of the
- * distance travelled, and the tests in the object's frame to some 2^-46 of its size (64 radii at the most, see
- * lib/object.c) times the condition of its linear part. Each with a factor of 2^5 to spare.
+ * How far off the surface a hit may be, and a second look at it: a position is rounded to 2^-53 of its size, t to
+ * 2^-53 of the distance travelled, and the tests in the object's frame to some 2^-46 of its size (64 radii at the
+ * most, see lib/object.c) times the condition of its linear part. Each with a factor of 2^5 to spare.
  */
 static double offset(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, double t,
                      const double position[3]) {
@@ -102,8 +103,8 @@ static double offset(const rgi_object *object, const rgi_linear *linear, const r
     return 0x1p-42 * condition * size + 0x1p-47 * (rgi_max_magnitude(position) + travelled);
 }
 
-static void hit_record(const query *q, const rgi_object *object, rg_object id, const rgi_candidate *c, unsigned wanted,
-                       rg_hit *hit) {
+static void hit_record(const query *q, const rgi_object *object, rg_object id, const rgi_candidate *c,
+                       unsigned wanted, rg_hit *hit) {
     static const double nowhere[3] = {0, 0, 0};
     const rgi_linear *linear = rgi_scene_linear(q->call->scene, object);
     memset(hit, 0, sizeof *hit);
@@ -301,8 +302,8 @@ static rg_result read_rays(call *c, const rg_trace_config *config, const rg_ray_
     bool required = count > 0;
     result = rgi_check_view3(v->origin.x, v->origin.y, v->origin.z, v->origin.type, RGI_FLOATS, required, "origin");
     if (!result)
-        result = rgi_check_view3(v->direction.x, v->direction.y, v->direction.z, v->direction.type, RGI_FLOATS, required,
-                                 "direction");
+        result = rgi_check_view3(v->direction.x, v->direction.y, v->direction.z, v->direction.type, RGI_FLOATS,
+                                 required, "direction");
     if (!result) result = rgi_check_view(v->t_min.data, v->t_min.type, RGI_FLOATS, 0, "t_min");
     if (!result) result = rgi_check_view(v->t_max.data, v->t_max.type, RGI_FLOATS, 0, "t_max");
     if (!result) result = rgi_check_view(v->mask.data, v->mask.type, RGI_U32, 0, "mask");
@@ -318,15 +319,17 @@ static rg_result read_hits(call *c, const rg_hit_views *hits) {
         const rg_output *view;
         unsigned types;
         const char *name;
-    } outputs[] = {{&v->t, RGI_FLOATS, "t"},        {&v->object, RGI_U64, "object"},
-                   {&v->u, RGI_FLOATS, "u"},        {&v->primitive, RGI_U32 | RGI_U64, "primitive"},
-                   {&v->v, RGI_FLOATS, "v"},        {&v->offset, RGI_FLOATS, "offset"},
-                   {&v->cells, RGI_U32, "cells"},   {&v->tests, RGI_U32, "tests"}};
+    } outputs[] = {{&v->t, RGI_FLOATS, "t"},      {&v->object, RGI_U64, "object"},
+                   {&v->u, RGI_FLOATS, "u"},      {&v->primitive, RGI_U32 | RGI_U64, "primitive"},
+                   {&v->v, RGI_FLOATS, "v"},      {&v->offset, RGI_FLOATS, "offset"},
+                   {&v->cells, RGI_U32, "cells"}, {&v->tests, RGI_U32, "tests"}};
     for (size_t i = 0; i < sizeof outputs / sizeof *outputs && !result; i++)
         result = rgi_check_view(outputs[i].view->data, outputs[i].view->type, outputs[i].types, 0, outputs[i].name);
-    if (!result) result = rgi_check_view3(v->normal.x, v->normal.y, v->normal.z, v->normal.type, RGI_FLOATS, 0, "normal");
     if (!result)
-        result = rgi_check_view3(v->position.x, v->position.y, v->position.z, v->position.type, RGI_FLOATS, 0, "position");
+        result = rgi_check_view3(v->normal.x, v->normal.y, v->normal.z, v->normal.type, RGI_FLOATS, 0, "normal");
+    if (!result)
+        result =
+            rgi_check_view3(v->position.x, v->position.y, v->position.z, v->position.type, RGI_FLOATS, 0, "position");
     c->wanted = (v->position.x ? POSITION : 0) | (v->normal.x ? NORMAL : 0) | (v->offset.data ? OFFSET : 0);
     return result;
 }

@@ -7,7 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-static inline double rgi_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline double rgi_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static inline void rgi_cross(const double a[3], const double b[3], double out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -35,8 +37,12 @@ static inline void rgi_set(double out[3], double x, double y, double z) {
 }
 
 /* Not fmin and fmax: those must care for NaN and become library calls. */
-static inline double rgi_min(double a, double b) { return a < b ? a : b; }
-static inline double rgi_max(double a, double b) { return a > b ? a : b; }
+static inline double rgi_min(double a, double b) {
+    return a < b ? a : b;
+}
+static inline double rgi_max(double a, double b) {
+    return a > b ? a : b;
+}
 
 /** Rounds down; |x| < 2^62. Not floor, which on baseline x86-64 is a library call. */
 static inline double rgi_floor(double x) {

@@ -37,10 +37,17 @@ static inline uint64_t rgi_read_integer(const char *at, rg_type type) {
     uint32_t u32;
     uint16_t u16;
     switch (type) {
-    case RG_U16: memcpy(&u16, at, sizeof u16); return u16;
-    case RG_U32: memcpy(&u32, at, sizeof u32); return u32;
-    case RG_U64: memcpy(&u64, at, sizeof u64); return u64;
-    default: return (unsigned char)*at;
+    case RG_U16:
+        memcpy(&u16, at, sizeof u16);
+        return u16;
+    case RG_U32:
+        memcpy(&u32, at, sizeof u32);
+        return u32;
+    case RG_U64:
+        memcpy(&u64, at, sizeof u64);
+        return u64;
+    default:
+        return (unsigned char)*at;
     }
 }
 

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Walks never add up steps. Every crossing of a wall is computed from the wall's integer index, t = (index * size - origin) /
- * direction, so an error can't grow (J. Amanatides, A. Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", Eurographics
- * 1987, gives the order of the walls; the sum in their loop is what drifts). For each tile the ray is first moved to where it
- * enters, by exact sums, and everything counts from the tile's corner: the error is some 2^-50 of the tile's size
- * wherever the tile and the ray's origin are, and boxes are listed with a pad of 2^-36 of it.
+ * Walks never add up steps. Every crossing of a wall is computed from the wall's integer index, t = (index * size -
+ * origin) / direction, so an error can't grow (J. Amanatides, A. Woo, "A Fast Voxel Traversal Algorithm for Ray
+ * Tracing", Eurographics 1987, gives the order of the walls; the sum in their loop is what drifts). For each tile the
+ * ray is first moved to where it enters, by exact sums, and everything counts from the tile's corner: the error is
+ * some 2^-50 of the tile's size wherever the tile and the ray's origin are, and boxes are listed with a pad of 2^-36
+ * of it.
  */
 #include "walk.h"
 
 #include "exact.h"
 #include "vec.h"
 
-/* Up to so many tiles along each axis of the logical box a ray goes from tile to tile; the walls between them are then
- * placed right to 2^-50 * 2^10 of a tile. Larger worlds are sparse: there each tile that holds something is tested. */
+/* Up to so many tiles along each axis of the logical box a ray goes from tile to tile; the walls between them are
+ * then placed right to 2^-50 * 2^10 of a tile. Larger worlds are sparse: there each tile that holds something is
+ * tested. */
 #define MANY_TILES 1024.0
 
 /* Below 2^-60 of the largest component a direction can't leave the pad of the boxes inside one tile. */
@@ -30,12 +32,17 @@ void rgi_walk_init(rgi_walk *walk, const double origin[3], const double directio
     walk->cells = 0;
 }
 
-static double earlier(double t) { return t > 0 ? t * (1 - 0x1p-49) : t * (1 + 0x1p-49); }
-static double later(double t) { return t > 0 ? t * (1 + 0x1p-49) : t * (1 - 0x1p-49); }
+static double earlier(double t) {
+    return t > 0 ? t * (1 - 0x1p-49) : t * (1 + 0x1p-49);
+}
+static double later(double t) {
+    return t > 0 ? t * (1 + 0x1p-49) : t * (1 - 0x1p-49);
+}
 
 /*
- * Narrows [*from, *to] to where the ray is inside the box, rounded outward; false if nowhere. Not by walk->inverse: from far
- * away even the smallest component counts. Below 2^-900 it moves nothing, whatever the distance (RG_COORDINATE_MAX).
+ * Narrows [*from, *to] to where the ray is inside the box, rounded outward; false if nowhere. Not by walk->inverse:
+ * from far away even the smallest component counts. Below 2^-900 it moves nothing, whatever the distance
+ * (RG_COORDINATE_MAX).
  */
 static bool clip(const rgi_walk *walk, const double lo[3], const double hi[3], double *from, double *to) {
     for (int a = 0; a < 3; a++) {
@@ -113,7 +120,8 @@ static bool visit_levels(const rgi_cells *cells, uint32_t levels, uint32_t fines
     while (levels) {
         uint32_t l = (uint32_t)__builtin_ctz(levels), shift = l - finest;
         const rgi_level *level = &cells->levels[l];
-        uint32_t x = (uint32_t)s->cell[0] >> shift, y = (uint32_t)s->cell[1] >> shift, z = (uint32_t)s->cell[2] >> shift;
+        uint32_t x = (uint32_t)s->cell[0] >> shift, y = (uint32_t)s->cell[1] >> shift,
+                 z = (uint32_t)s->cell[2] >> shift;
         uint32_t cell = level->first + (z * level->count[1] + y) * level->count[0] + x;
         walk->cells++;
         if (visit_list(cells, cells->heads[cell], tile, walk)) return true;
@@ -123,9 +131,9 @@ static bool visit_levels(const rgi_cells *cells, uint32_t levels, uint32_t fines
 }
 
 /*
- * From cell to cell at the finest level that holds anything in this tile. A step from index i to j enters new cells on all
- * levels up to the highest bit in which i and j differ; those that hold anything are looked into, so no cell of any
- * level is looked into twice, and none of an empty level.
+ * From cell to cell at the finest level that holds anything in this tile. A step from index i to j enters new cells
+ * on all levels up to the highest bit in which i and j differ; those that hold anything are looked into, so no cell
+ * of any level is looked into twice, and none of an empty level.
  */
 static bool walk_tile(const rgi_cells *cells, uint32_t index, double from, double to, rgi_walk *walk) {
     const rgi_tile *tile = rgi_slots_at(&cells->tiles, index);

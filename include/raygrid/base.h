@@ -68,7 +68,8 @@ RG_API const char *rg_result_name(rg_result result);
 
 /**
  * What was wrong with the last call of this thread that failed: a sentence that names the offending value, or ""
- * if none failed yet. The text belongs to the thread and holds until its next failing call. Successful calls leave it.
+ * if none failed yet. The text belongs to the thread and holds until its next failing call. Successful calls leave
+ * it.
  */
 RG_API const char *rg_error_message(void);
 
@@ -90,7 +91,8 @@ typedef struct rg_allocator {
  * The host's own job system: call body(context, i) once for each i in [0, count), on any threads in any order, and
  * return when all calls have returned. Calls of body never fail and never wait for one another.
  */
-typedef void (*rg_parallel_for)(void *user, uint64_t count, void (*body)(void *context, uint64_t index), void *context);
+typedef void (*rg_parallel_for)(void *user, uint64_t count, void (*body)(void *context, uint64_t index),
+                                void *context);
 
 /** Receives one line of text, without a line end, when something happens that a developer may want to know. */
 typedef void (*rg_log)(void *user, const char *message);
@@ -100,14 +102,7 @@ typedef void (*rg_log)(void *user, const char *message);
 /** The type of the numbers that a view reads or writes. */
 typedef int32_t rg_type;
 
-enum {
-    RG_F64 = 0,
-    RG_F32 = 1,
-    RG_U8 = 2,
-    RG_U16 = 3,
-    RG_U32 = 4,
-    RG_U64 = 5
-};
+enum { RG_F64 = 0, RG_F32 = 1, RG_U8 = 2, RG_U16 = 3, RG_U32 = 4, RG_U64 = 5 };
 
 /*
  * A view says where the field of record i lies: at `data + i * stride` bytes. Strides may be negative, or 0 to give

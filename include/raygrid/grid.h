@@ -60,8 +60,9 @@ typedef struct rg_grid_config {
      */
     uint32_t resolution;
     /**
-     * The first physical box; hi - lo at least RG_RADIUS_MIN. All six 0: from the objects, when the first are inserted. A rebuild makes a new
-     * box from the objects, unless it only adapts an automatic resolution: then a box that was given stays.
+     * The first physical box; hi - lo at least RG_RADIUS_MIN. All six 0: from the objects, when the first are
+     * inserted. A rebuild makes a new box from the objects, unless it only adapts an automatic resolution: then a box
+     * that was given stays.
      */
     double lo[3], hi[3];
     /**
@@ -80,18 +81,18 @@ RG_API rg_result rg_grid_config_default(rg_grid_config *config, size_t size);
 /** What is known of a grid. Set `size` before the call; the library fills what both sides know. */
 typedef struct rg_grid_report {
     size_t size;
-    rg_grid_kind kind;                    /* never RG_GRID_DEFAULT: the kind that it stands for */
-    uint32_t levels;                      /* levels of cells; 0 while there is no physical box yet */
-    uint32_t levels_used;                 /* bit l set: level l, counted from the finest, holds objects */
-    uint32_t resolution[3];               /* cells of the finest level, each axis */
+    rg_grid_kind kind;                     /* never RG_GRID_DEFAULT: the kind that it stands for */
+    uint32_t levels;                       /* levels of cells; 0 while there is no physical box yet */
+    uint32_t levels_used;                  /* bit l set: level l, counted from the finest, holds objects */
+    uint32_t resolution[3];                /* cells of the finest level, each axis */
     double physical_lo[3], physical_hi[3]; /* where the cells are; zero while there is none */
-    double logical_lo[3], logical_hi[3];  /* holds all finite objects; lo > hi while there are none */
-    uint64_t objects;                     /* objects in this grid */
-    uint64_t entries;                     /* places in cells that they take, all together */
-    uint64_t unbounded;                   /* objects that no cell can hold (infinite, or larger than the physical
-                                             box), tested for every ray */
-    uint64_t tiles;                       /* tiles of the physical box that hold something; 1 if nothing left it */
-    uint64_t rebuilds;                    /* how often it was rebuilt: by itself, rg_grid_rebuild, rg_grid_configure */
+    double logical_lo[3], logical_hi[3];   /* holds all finite objects; lo > hi while there are none */
+    uint64_t objects;                      /* objects in this grid */
+    uint64_t entries;                      /* places in cells that they take, all together */
+    uint64_t unbounded;                    /* objects that no cell can hold (infinite, or larger than the physical
+                                              box), tested for every ray */
+    uint64_t tiles;                        /* tiles of the physical box that hold something; 1 if nothing left it */
+    uint64_t rebuilds; /* how often it was rebuilt: by itself, rg_grid_rebuild, rg_grid_configure */
 } rg_grid_report;
 
 #ifdef __cplusplus

@@ -5,8 +5,8 @@
  * Thread rule: a scene may be used by any number of threads at once. Calls that change it wait for running traces to
  * end and are seen whole or not at all; a trace that starts after such a call returned sees its effect. There is no
  * commit and no step. From inside a callback (user-defined shape or filter) the scene being traced may be traced and
- * read; calls that would change it return RG_BUSY. A callback may trace other scenes too, as long as no callback of those
- * traces this one: each trace holds its scene against changes while it runs.
+ * read; calls that would change it return RG_BUSY. A callback may trace other scenes too, as long as no callback of
+ * those traces this one: each trace holds its scene against changes while it runs.
  */
 #ifndef RAYGRID_SCENE_H
 #define RAYGRID_SCENE_H
@@ -49,7 +49,8 @@ typedef struct rg_scene_config {
     /** The host's job system in place of workers; then no thread is made. NULL: workers. */
     rg_parallel_for parallel_for;
     void *parallel_for_user;
-    /** Told when a grid is rebuilt, or could not be for want of memory. NULL: nobody. Called with the scene locked. */
+    /** Told when a grid is rebuilt, or could not be for want of memory. NULL: nobody. Called with the scene locked.
+     */
     rg_log log;
     void *log_user;
     /** How RG_GRID_OF_SCENE is made. NULL: defaults. Read during the call only. */
@@ -110,12 +111,12 @@ RG_API rg_result rg_pose_views_of(rg_pose_views *views, size_t size, const rg_po
 /** What rg_scene_insert_many inserts. Zero it, set the size, then what is given. */
 typedef struct rg_insert_views {
     size_t size;
-    const void *shapes;      /* the first of the rg_shape pointers. Required. */
-    ptrdiff_t shapes_stride; /* bytes from one rg_shape pointer to the next; 0: all objects have the same shape */
+    const void *shapes;         /* the first of the rg_shape pointers. Required. */
+    ptrdiff_t shapes_stride;    /* bytes from one rg_shape pointer to the next; 0: all objects have the same shape */
     const rg_pose_views *poses; /* Required. */
-    rg_input mask;           /* RG_U32; not given: all bits set */
-    rg_grid grid;            /* where they are stored; 0: the scene's own grid */
-    uint32_t reserved;       /* 0 */
+    rg_input mask;              /* RG_U32; not given: all bits set */
+    rg_grid grid;               /* where they are stored; 0: the scene's own grid */
+    uint32_t reserved;          /* 0 */
 } rg_insert_views;
 
 /**
@@ -152,7 +153,8 @@ RG_API rg_result rg_scene_move_many(rg_scene *scene, const rg_input *objects, co
 /** Changes which rays see an object: those with (ray mask & mask) != 0. Errors: RG_INVALID_ID, RG_BUSY. */
 RG_API rg_result rg_scene_set_mask(rg_scene *scene, rg_object object, uint32_t mask);
 
-/** Removes an object; its id is stale from now on. Errors: RG_INVALID_ARGUMENT, RG_INVALID_ID, RG_BUSY. Cost: constant. */
+/** Removes an object; its id is stale from now on. Errors: RG_INVALID_ARGUMENT, RG_INVALID_ID, RG_BUSY. Cost:
+ * constant. */
 RG_API rg_result rg_scene_remove(rg_scene *scene, rg_object object);
 
 /**
@@ -196,12 +198,13 @@ RG_API rg_result rg_scene_stats(rg_scene *scene, rg_scene_report *report);
  */
 RG_API rg_result rg_grid_create(rg_scene *scene, const rg_grid_config *config, rg_grid *grid);
 
-/** Destroys an empty grid. Errors: RG_INVALID_ID, RG_BUSY (it holds objects, is the scene's own, or in a callback). */
+/** Destroys an empty grid. Errors: RG_INVALID_ID, RG_BUSY (it holds objects, is the scene's own, or in a callback).
+ */
 RG_API rg_result rg_grid_destroy(rg_scene *scene, rg_grid grid);
 
 /**
- * Changes kind, resolution, box or factor of a grid that may hold objects, and rebuilds it. Errors: as rg_grid_create,
- * RG_INVALID_ID; the grid is then as it was. Cost: linear in its objects.
+ * Changes kind, resolution, box or factor of a grid that may hold objects, and rebuilds it. Errors: as
+ * rg_grid_create, RG_INVALID_ID; the grid is then as it was. Cost: linear in its objects.
  */
 RG_API rg_result rg_grid_configure(rg_scene *scene, rg_grid grid, const rg_grid_config *config);
 

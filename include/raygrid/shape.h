@@ -52,11 +52,11 @@ RG_API rg_result rg_shape_create_sphere(const rg_shape_config *config, double ra
 
 /**
  * A box with its faces in the local axes' planes, from corner `lo` to corner `hi`, lo <= hi on each axis. It may have
- * no thickness (lo == hi), and may be infinite (lo -inf, hi +inf, or both), on any axis; an infinite axis needs a pose
- * whose linear part is the identity. Edges and corners belong to the box.
- * Hits: primitive 0 to 5 for the faces -x, +x, -y, +y, -z, +z: the face by which the ray enters the box (leaves it, if
- * that is the hit), the lowest of those where it does so at an edge or corner; u = v = 0.
- * Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE, RG_OUT_OF_MEMORY. Cost: one allocation.
+ * no thickness (lo == hi), and may be infinite (lo -inf, hi +inf, or both), on any axis; an infinite axis needs a
+ * pose whose linear part is the identity. Edges and corners belong to the box. Hits: primitive 0 to 5 for the faces
+ * -x, +x, -y, +y, -z, +z: the face by which the ray enters the box (leaves it, if that is the hit), the lowest of
+ * those where it does so at an edge or corner; u = v = 0. Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE,
+ * RG_OUT_OF_MEMORY. Cost: one allocation.
  */
 RG_API rg_result rg_shape_create_box(const rg_shape_config *config, const double lo[3], const double hi[3],
                                      rg_shape **shape);
@@ -122,9 +122,10 @@ typedef struct rg_user_shape {
     /**
      * Finds the hit with the smallest t in [ray->t_min, ray->t_max]. Returns 1 and fills all of `hit`, or 0 for none
      * (`hit` is then ignored), or a negative number for a failure: the trace then returns RG_CALLBACK_FAILED. A t
-     * outside the range counts as none. Where a hit does not count (culling, a filter), it is called again with t_min just
-     * beyond it; more than 1024 such hits of one ray count as a failure. The ray it sees may have its origin moved along it and its direction scaled by
-     * a power of two, t_min and t_max with them, so that nothing loses precision far away. Required.
+     * outside the range counts as none. Where a hit does not count (culling, a filter), it is called again with t_min
+     * just beyond it; more than 1024 such hits of one ray count as a failure. The ray it sees may have its origin
+     * moved along it and its direction scaled by a power of two, t_min and t_max with them, so that nothing loses
+     * precision far away. Required.
      */
     int32_t (*intersect)(void *user, const rg_local_ray *ray, rg_local_hit *hit);
     /** Whether there is any hit in the range; the same returns. NULL: intersect is asked. */
@@ -144,13 +145,7 @@ RG_API rg_result rg_shape_create_user(const rg_shape_config *config, const rg_us
 /** What kind of geometry a shape is. */
 typedef int32_t rg_shape_kind;
 
-enum {
-    RG_SHAPE_SPHERE = 0,
-    RG_SHAPE_BOX = 1,
-    RG_SHAPE_CAPSULE = 2,
-    RG_SHAPE_MESH = 3,
-    RG_SHAPE_USER = 4
-};
+enum { RG_SHAPE_SPHERE = 0, RG_SHAPE_BOX = 1, RG_SHAPE_CAPSULE = 2, RG_SHAPE_MESH = 3, RG_SHAPE_USER = 4 };
 
 /** What is known of a shape. Set `size` before the call; the library fills what both sides know. */
 typedef struct rg_shape_report {

@@ -6,18 +6,19 @@
  * and rg_hit, and on views, where every field lies where the host likes and only what is asked for is computed. Both
  * take one ray or any number; calls of some hundred rays and more are spread over the scene's workers.
  *
- * Among hits at exactly the same t the lowest object id wins, then the lowest primitive. The answer does not depend on
- * the number of workers, on the other rays of the call, or on the order in which objects were inserted or moved.
+ * Among hits at exactly the same t the lowest object id wins, then the lowest primitive. The answer does not depend
+ * on the number of workers, on the other rays of the call, or on the order in which objects were inserted or moved.
  *
- * A ray is invalid if its origin is not finite or beyond RG_COORDINATE_MAX, its direction is not finite or zero, t_min or
- * t_max is NaN, or t_min > t_max. An invalid ray hits nothing, and is told from a miss: its t is NaN. Other rays
- * of the call are not touched by it; the call succeeds and counts it (rg_trace_config, rg_scene_report).
+ * A ray is invalid if its origin is not finite or beyond RG_COORDINATE_MAX, its direction is not finite or zero,
+ * t_min or t_max is NaN, or t_min > t_max. An invalid ray hits nothing, and is told from a miss: its t is NaN. Other
+ * rays of the call are not touched by it; the call succeeds and counts it (rg_trace_config, rg_scene_report).
  *
  * Accuracy: let D be the distance from the ray's origin to an object and R the radius of the object around its
- * position. Where a ray passes the surface's silhouette by more than 2^-40 R, whether it hits is decided right, at any
- * D up to 2^60 R and any distance of both from the world's origin; t is within 2^-50 D + 2^-40 R / |cos| in world length,
- * where cos is that of the angle between ray and normal (linear parts of condition k: 2^-40 k). Normals are right to
- * 2^-20 and what that error of t makes of them where the surface is curved. docs/numerics.md has more.
+ * position (of an infinite box: that of its finite axes). Where a ray passes the surface's silhouette by more than
+ * 2^-40 R, whether it hits is decided right, at any D up to 2^60 R and any distance of both from the world's origin;
+ * t is within 2^-50 D + 2^-40 R / |cos| in world length, where cos is that of the angle between ray and normal
+ * (linear parts of condition k: 2^-40 k). Normals are right to 2^-20 and what that error of t makes of them where the
+ * surface is curved. docs/numerics.md has more.
  *
  * Thread rule: any number of threads at once, also while others change the scene. Nothing is allocated.
  */
@@ -31,7 +32,8 @@
 extern "C" {
 #endif
 
-/** A ray: the points origin + t * direction with t_min <= t <= t_max. Distances t are in units of direction's length. */
+/** A ray: the points origin + t * direction with t_min <= t <= t_max. Distances t are in units of direction's length.
+ */
 typedef struct rg_ray {
     double origin[3];
     double direction[3]; /* any length but 0 */
@@ -50,7 +52,7 @@ RG_API rg_ray rg_ray_from(const double origin[3], const double direction[3]);
 /** The closest hit of a ray. For a miss: object RG_NO_OBJECT, t +infinity (NaN for an invalid ray), primitive
  *  RG_NO_PRIMITIVE, all else 0. */
 typedef struct rg_hit {
-    double t;           /* in units of the direction's length */
+    double t; /* in units of the direction's length */
     rg_object object;
     double position[3]; /* of the hit, world: origin + t * direction, rounded once */
     float normal[3];    /* geometric, outward, length 1, world */
@@ -64,8 +66,8 @@ typedef struct rg_hit {
 
 /**
  * Closest hits of `count` rays. hits[i] belongs to rays[i].
- * Errors: RG_INVALID_ARGUMENT (a NULL pointer with count > 0), RG_LIMIT_EXCEEDED (count > 2^48), RG_CALLBACK_FAILED (a
- * user-defined shape failed: the rays concerned have t NaN, all others are complete).
+ * Errors: RG_INVALID_ARGUMENT (a NULL pointer with count > 0), RG_LIMIT_EXCEEDED (count > 2^48), RG_CALLBACK_FAILED
+ * (a user-defined shape failed: the rays concerned have t NaN, all others are complete).
  */
 RG_API rg_result rg_scene_trace(rg_scene *scene, const rg_ray *rays, rg_hit *hits, uint64_t count);
 
@@ -85,15 +87,15 @@ typedef struct rg_ray_views {
 /** Hits where they are wanted. Zero it, set the size, then what is wanted; the rest is not computed. */
 typedef struct rg_hit_views {
     size_t size;
-    rg_output t;          /* RG_F64 or RG_F32 */
-    rg_output object;     /* RG_U64 */
-    rg_output primitive;  /* RG_U32 or RG_U64 */
-    rg_output3 normal;    /* RG_F64 or RG_F32 */
-    rg_output u, v;       /* RG_F64 or RG_F32 */
-    rg_output3 position;  /* RG_F64 or RG_F32 */
-    rg_output offset;     /* RG_F64 or RG_F32 */
-    rg_output cells;      /* RG_U32: cells that the ray looked into, all grids and levels */
-    rg_output tests;      /* RG_U32: objects that the ray was tested against, repeats counted */
+    rg_output t;         /* RG_F64 or RG_F32 */
+    rg_output object;    /* RG_U64 */
+    rg_output primitive; /* RG_U32 or RG_U64 */
+    rg_output3 normal;   /* RG_F64 or RG_F32 */
+    rg_output u, v;      /* RG_F64 or RG_F32 */
+    rg_output3 position; /* RG_F64 or RG_F32 */
+    rg_output offset;    /* RG_F64 or RG_F32 */
+    rg_output cells;     /* RG_U32: cells that the ray looked into, all grids and levels */
+    rg_output tests;     /* RG_U32: objects that the ray was tested against, repeats counted */
 } rg_hit_views;
 
 /** Which sides of surfaces rays hit. */
@@ -106,9 +108,9 @@ enum {
 };
 
 /**
- * Decides on a possible hit of ray `index`: 1 accepts, 0 lets the ray pass through this surface, negative fails the ray:
- * the trace then returns RG_CALLBACK_FAILED. Called for candidates in any order, not only for the closest, and possibly
- * more than once for the same one; from several threads at once.
+ * Decides on a possible hit of ray `index`: 1 accepts, 0 lets the ray pass through this surface, negative fails the
+ * ray: the trace then returns RG_CALLBACK_FAILED. Called for candidates in any order, not only for the closest, and
+ * possibly more than once for the same one; from several threads at once.
  */
 typedef int32_t (*rg_filter)(void *user, uint64_t index, const rg_hit *candidate);
 

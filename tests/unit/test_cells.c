@@ -56,7 +56,8 @@ START_TEST(the_level_fits_the_size) {
     ck_assert_uint_eq(place(&cells, 1.1, 1.1, 1.1, 8.1).level, RGI_NONE);
     for (int i = 0; i < 100000; i++) {
         double size = pow(10, -4 + 4.9 * unit_random());
-        rgi_placement p = place(&cells, unit_random_scale(-2, 3), unit_random_scale(-2, 3), unit_random_scale(-2, 3), size);
+        rgi_placement p =
+            place(&cells, unit_random_scale(-2, 3), unit_random_scale(-2, 3), unit_random_scale(-2, 3), size);
         if (size > 7.99) continue;
         uint64_t entries = 0, tiles = 0;
         ck_assert_uint_ne(p.level, RGI_NONE);
@@ -69,8 +70,8 @@ START_TEST(the_level_fits_the_size) {
 }
 END_TEST
 
-/* The torus: the tile is the whole part and the cell the rest, on both sides of 0, and a box that touches a wall is on
- * both sides of it. */
+/* The torus: the tile is the whole part and the cell the rest, on both sides of 0, and a box that touches a wall is
+ * on both sides of it. */
 START_TEST(tiles_and_cells_of_a_place) {
     rgi_cells cells;
     make(&cells, false, 8);
@@ -144,7 +145,8 @@ START_TEST(churn) {
             first[i] = RGI_NONE;
             if (unit_random() < 0.7) {
                 double far = unit_random() < 0.1 ? 1e11 : 40, size = pow(10, -3 + 4.2 * unit_random());
-                rgi_placement p = place(&cells, far * unit_random() - 20, 40 * unit_random() - 20, 10 * unit_random(), size);
+                rgi_placement p =
+                    place(&cells, far * unit_random() - 20, 40 * unit_random() - 20, 10 * unit_random(), size);
                 first[i] = insert(&cells, &p, i);
             }
             if (step % 3000 == 0) check_lists(&cells, OBJECTS);

@@ -2,7 +2,8 @@
 #include "exact.h"
 #include "unit.h"
 
-/* With a mantissa of 64 bits, a sum of numbers of like size is exact in long double, and fma gives a product's error. */
+/* With a mantissa of 64 bits, a sum of numbers of like size is exact in long double, and fma gives a product's error.
+ */
 START_TEST(sums_and_products_lose_nothing) {
     for (int i = 0; i < 100000; i++) {
         double a = unit_random_scale(-3, 3), b = unit_random_scale(-3, 3), error;
@@ -23,7 +24,7 @@ START_TEST(rebase_keeps_the_rest) {
     for (int e = 0; e < 300; e++) {
         double far = ldexp(1, e);
         ck_assert(rgi_rebase(-far * 3, 0.375, far, 3) == -0.375);
-        ck_assert(rgi_rebase(far * 5 , -0.125, -far, 5) == 0.125);
+        ck_assert(rgi_rebase(far * 5, -0.125, -far, 5) == 0.125);
     }
     /* t * d = 2^60 - 1 exactly, which no double holds. */
     ck_assert(rgi_rebase(-0x1p60, -1.5, 0x1p30 + 1, 0x1p30 - 1) == 0.5);

@@ -97,7 +97,8 @@ START_TEST(resolution_follows_the_number) {
     told = 0;
     for (int i = 0; i < MANY; i++)
         members[i] = insert(&grid, 100 * unit_random(), 100 * unit_random(), 100 * unit_random(), 0.1);
-    double cells = grid.cells.levels[0].count[0] * (double)grid.cells.levels[0].count[1] * grid.cells.levels[0].count[2];
+    double cells =
+        grid.cells.levels[0].count[0] * (double)grid.cells.levels[0].count[1] * grid.cells.levels[0].count[2];
     ck_assert(cells > MANY / 4 && cells < 32 * MANY);
     ck_assert_uint_le(grid.rebuilds, 10);
     ck_assert_int_eq(told, (int)grid.rebuilds + 1);
@@ -111,8 +112,8 @@ START_TEST(resolution_follows_the_number) {
 }
 END_TEST
 
-/* The logical box only grows while objects move, but is made exact again after as many changes as it would cost; when the
- * objects have drawn together, so is the physical one. */
+/* The logical box only grows while objects move, but is made exact again after as many changes as it would cost; when
+ * the objects have drawn together, so is the physical one. */
 START_TEST(boxes_shrink_again) {
     enum { MANY = 200 };
     static uint32_t members[MANY];
@@ -152,8 +153,8 @@ static void scarce_release(void *user, void *block, size_t size, size_t alignmen
     free(block);
 }
 
-/* A rebuild that finds no memory fails nobody: the call that needed it not succeeds and leaves no message; later it is
- * tried again. */
+/* A rebuild that finds no memory fails nobody: the call that would have liked it succeeds and leaves no message;
+ * later it is tried again. */
 START_TEST(rebuilds_wait_for_memory) {
     rg_grid_config config;
     rgi_grid grid;
@@ -220,11 +221,11 @@ START_TEST(configurations) {
     rg_grid_config config, given;
     ck_assert_int_eq(rgi_grid_config_read(&config, NULL), RG_OK);
     ck_assert(config.kind == RG_GRID_HIERARCHICAL && config.rebuild_factor == 2);
-#define REFUSED(field, value, code)                                                                                     \
-    do {                                                                                                                \
-        ck_assert_int_eq(rg_grid_config_default(&given, sizeof given), RG_OK);                                          \
-        given.field = (value);                                                                                          \
-        ck_assert_int_eq(rgi_grid_config_read(&config, &given), code);                                                  \
+#define REFUSED(field, value, code)                                                                                  \
+    do {                                                                                                             \
+        ck_assert_int_eq(rg_grid_config_default(&given, sizeof given), RG_OK);                                       \
+        given.field = (value);                                                                                       \
+        ck_assert_int_eq(rgi_grid_config_read(&config, &given), code);                                               \
     } while (0)
     REFUSED(kind, 3, RG_INVALID_ARGUMENT);
     REFUSED(kind, -1, RG_INVALID_ARGUMENT);

@@ -94,7 +94,8 @@ END_TEST
 START_TEST(infinite_boxes) {
     const double lo[3] = {-INFINITY, -1, -INFINITY}, hi[3] = {INFINITY, 0, INFINITY};
     rgi_candidate c;
-    rgi_local_ray down = ray_at(5, 3, 7, 1, -1, 0), along = ray_at(5, -0.5, 7, 1, 0, 0), above = ray_at(5, 1, 7, 1, 0, 0);
+    rgi_local_ray down = ray_at(5, 3, 7, 1, -1, 0), along = ray_at(5, -0.5, 7, 1, 0, 0),
+                  above = ray_at(5, 1, 7, 1, 0, 0);
     ck_assert(rgi_box_intersect(lo, hi, &down, &c) && c.t == 3 && c.primitive == 3);
     ck_assert(!rgi_box_intersect(lo, hi, &along, &c));
     ck_assert(!rgi_box_intersect(lo, hi, &above, &c));
@@ -143,7 +144,9 @@ START_TEST(capsule_hits_lie_on_it_and_misses_pass_it) {
 }
 END_TEST
 
-static bool beyond(void *context, const rgi_candidate *c) { return c->t > *(double *)context; }
+static bool beyond(void *context, const rgi_candidate *c) {
+    return c->t > *(double *)context;
+}
 
 START_TEST(filters_let_the_far_side_through) {
     rgi_candidate c;

@@ -11,8 +11,8 @@ static rgi_memory memory;
 static double vertices[VERTICES][3];
 static uint32_t triangles[TRIANGLES][3];
 
-/* A closed globe: two poles and rings of vertices between them, so little dented that from its middle part all of it can be
- * seen: no edge is a silhouette, which a ray may rightly pass on either side. */
+/* A closed globe: two poles and rings of vertices between them, so little dented that from its middle part all of it
+ * can be seen: no edge is a silhouette, which a ray may rightly pass on either side. */
 static void make_globe(void) {
     const double pi = acos(-1);
     uint32_t n = 0;
@@ -94,8 +94,8 @@ START_TEST(every_triangle_is_in_one_leaf_and_its_boxes) {
 }
 END_TEST
 
-/* NUMERICS: random aim proves nothing, so each ray aims at a vertex or at a point of an edge. From inside nothing leaks,
- * and what is hit is one of the triangles that share the target. */
+/* NUMERICS: random aim proves nothing, so each ray aims at a vertex or at a point of an edge. From inside nothing
+ * leaks, and what is hit is one of the triangles that share the target. */
 START_TEST(watertight_at_vertices_and_edges) {
     rgi_mesh *mesh = globe();
     for (int i = 0; i < 200000; i++) {
@@ -113,8 +113,8 @@ START_TEST(watertight_at_vertices_and_edges) {
         ck_assert(c.u >= 0 && c.v >= 0 && c.u + c.v <= 1 + 0x1p-50);
         bool shares = false;
         for (int k = 0; k < 3; k++) shares |= vertices[triangles[c.primitive][k]] == a;
-        ck_assert_msg(c.t < 1 + 1e-12 && (along > 0 || c.t < 1 - 1e-12 || shares), "t %.17g along %g primitive %u of %u",
-                      c.t, along, c.primitive, triangle);
+        ck_assert_msg(c.t < 1 + 1e-12 && (along > 0 || c.t < 1 - 1e-12 || shares),
+                      "t %.17g along %g primitive %u of %u", c.t, along, c.primitive, triangle);
         ray.any = true;
         ck_assert(rgi_mesh_intersect(mesh, &ray, &c));
     }

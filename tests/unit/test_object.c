@@ -77,8 +77,8 @@ START_TEST(invalid_rays) {
 }
 END_TEST
 
-/* NUMERICS, cases 1 and 2: whether a ray hits is right from any distance. The ray runs along an axis that doubles resolve
- * exactly, so the impact is known without rounding. */
+/* NUMERICS, cases 1 and 2: whether a ray hits is right from any distance. The ray runs along an axis that doubles
+ * resolve exactly, so the impact is known without rounding. */
 START_TEST(from_any_distance) {
     const double direction[3] = {0.75, 0.5, 0.25};
     for (int e = 1; e < 50; e++) {
@@ -102,8 +102,12 @@ START_TEST(from_any_distance) {
 }
 END_TEST
 
-static void setup(void) { rg_shape_create_sphere(NULL, 1, &ball); }
-static void teardown(void) { rg_shape_release(&ball); }
+static void setup(void) {
+    rg_shape_create_sphere(NULL, 1, &ball);
+}
+static void teardown(void) {
+    rg_shape_release(&ball);
+}
 
 Suite *unit_suite(void) {
     Suite *suite = suite_create("object");

@@ -26,7 +26,8 @@ START_TEST(inverse_times_matrix) {
                     sum += m[3 * r + k] * linear.inverse[3 * k + c];
                     scale += fabs(m[3 * r + k] * linear.inverse[3 * k + c]);
                 }
-                /* Cofactors have one rounding; the determinant's, relative to itself, grows with what cancels in it. */
+                /* Cofactors have one rounding; the determinant's, relative to itself, grows with what cancels in it.
+                 */
                 ck_assert_double_le(fabs(sum - (r == c)), 0x1p-49 * scale * lengths / fabs(determinant));
             }
         }

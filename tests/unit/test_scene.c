@@ -299,8 +299,8 @@ START_TEST(views_of_poses) {
 }
 END_TEST
 
-/* Columns given in double are rounded to float before anything is made of them: the same object as from floats, to the
- * last bit. (gcc 12 drops such roundings in pairs, see lib/meson.build.) */
+/* Columns given in double are rounded to float before anything is made of them: the same object as from floats, to
+ * the last bit. (gcc 12 drops such roundings in pairs, see lib/meson.build.) */
 START_TEST(columns_in_double_are_rounded) {
     const double position[3] = {0.1, 0.2, 0.3}, columns[9] = {1.1, 0.1, -0.2, 0.3, 0.9, 0.7, -0.4, 0.2, 1.3};
     float rounded[9];
@@ -319,7 +319,8 @@ START_TEST(columns_in_double_are_rounded) {
         poses.size = sizeof poses;
         poses.position = rg_input3_packed(position, 0, RG_F64);
         for (int j = 0; j < 3; j++)
-            poses.column[j] = k ? rg_input3_packed(rounded + 3 * j, 0, RG_F32) : rg_input3_packed(columns + 3 * j, 0, RG_F64);
+            poses.column[j] =
+                k ? rg_input3_packed(rounded + 3 * j, 0, RG_F32) : rg_input3_packed(columns + 3 * j, 0, RG_F64);
         views.size = sizeof views;
         views.shapes = &ball;
         views.poses = &poses;
@@ -376,7 +377,8 @@ END_TEST
 
 /* -------------------------------------------------------------------------------------------- offset of hits */
 
-/* NUMERICS, case 28: a further ray from the lifted position, of any direction on that side, does not meet the same spot. */
+/* NUMERICS, case 28: a further ray from the lifted position, of any direction on that side, does not meet the same
+ * spot. */
 START_TEST(no_ray_hits_where_it_starts) {
     for (int e = -8; e <= 8; e++) {
         double at = pow(10, e) * 1.2345678;

@@ -65,8 +65,9 @@ START_TEST(infinite_and_far) {
     rg_shape *plane, *ball;
     double lo[3], hi[3], position[3] = {1, 2, 3};
     const float turned[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
-    ck_assert_int_eq(rg_shape_create_box(NULL, (double[]){-INFINITY, -1, -INFINITY}, (double[]){INFINITY, 0, INFINITY},
-                                         &plane), RG_OK);
+    ck_assert_int_eq(
+        rg_shape_create_box(NULL, (double[]){-INFINITY, -1, -INFINITY}, (double[]){INFINITY, 0, INFINITY}, &plane),
+        RG_OK);
     ck_assert_int_eq(rgi_shape_bounds(plane, position, NULL, lo, hi), RG_OK);
     ck_assert(lo[0] == -INFINITY && hi[2] == INFINITY && lo[1] <= 1 && hi[1] >= 2 && hi[1] < 2.0000001);
     ck_assert_int_eq(rgi_shape_bounds(plane, position, turned, lo, hi), RG_INVALID_VALUE);
@@ -80,7 +81,9 @@ START_TEST(infinite_and_far) {
 }
 END_TEST
 
-static void count_destroy(void *user) { ++*(int *)user; }
+static void count_destroy(void *user) {
+    ++*(int *)user;
+}
 
 static int32_t never(void *user, const rg_local_ray *ray, rg_local_hit *hit) {
     (void)user, (void)ray, (void)hit;

@@ -11,7 +11,9 @@ typedef struct record {
 
 static rgi_memory memory;
 
-static record *at(const rgi_slots *slots, uint32_t i) { return rgi_slots_at(slots, i); }
+static record *at(const rgi_slots *slots, uint32_t i) {
+    return rgi_slots_at(slots, i);
+}
 
 START_TEST(taken_anew_in_reverse) {
     rgi_slots slots;

@@ -71,7 +71,8 @@ static void random_direction(double d[3]) {
     d[axis] = (1 + unit_random()) * (unit_random() < 0.5 ? -1 : 1);
 }
 
-/* No walk passes over a box that the ray crosses, whatever the offset, the spread, and how far away the ray starts. */
+/* No walk passes over a box that the ray crosses, whatever the offset, the spread, and how far away the ray starts.
+ */
 START_TEST(nothing_is_passed_over) {
     const double offsets[] = {0, 1e3 + 0.56, -1e6 - 0.37, 1e9 + 0.56}, spreads[] = {0.5, 3, 3000};
     uint64_t crossed = 0;
@@ -98,8 +99,8 @@ START_TEST(nothing_is_passed_over) {
             for (uint32_t o = 0; o < OBJECTS; o++) {
                 if (!crosses(origin, d, lo[o], hi[o], t_min, t_max)) continue;
                 crossed++;
-                ck_assert_msg(seen[o] > 0, "set %d ray %d passes over %u: from %a %a %a along %a %a %a", set, i, o, origin[0],
-                              origin[1], origin[2], d[0], d[1], d[2]);
+                ck_assert_msg(seen[o] > 0, "set %d ray %d passes over %u: from %a %a %a along %a %a %a", set, i, o,
+                              origin[0], origin[1], origin[2], d[0], d[1], d[2]);
             }
         }
         rgi_cells_free(&cells);
@@ -108,7 +109,8 @@ START_TEST(nothing_is_passed_over) {
 }
 END_TEST
 
-/* In a level whose cells are no smaller than the object, a ray meets it in its eight cells at the most; in all tiles. */
+/* In a level whose cells are no smaller than the object, a ray meets it in its eight cells at the most; in all tiles.
+ */
 START_TEST(nothing_is_tested_more_often_than_it_has_cells) {
     for (int kind = 0; kind < 2; kind++) {
         rgi_cells cells;

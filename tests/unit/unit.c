@@ -13,7 +13,9 @@ static uint64_t next(void) {
     return state * 0x2545f4914f6cdd1du;
 }
 
-double unit_random(void) { return (double)(next() >> 11) * 0x1p-53; }
+double unit_random(void) {
+    return (double)(next() >> 11) * 0x1p-53;
+}
 
 double unit_random_scale(double from, double to) {
     return (2 * unit_random() - 1) * pow(10, from + (to - from) * unit_random());
