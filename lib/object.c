@@ -15,6 +15,16 @@ static double power_of_two(int e) {
     return value;
 }
 
+/*
+ * A limit of t in scaled units. What underflows keeps its sign: t = 0 is out of the range of a ray that starts at the
+ * smallest t above it. The caller has clipped it to where t in its own units is a double: a hit must not look like a
+ * miss.
+ */
+static double scaled_limit(double t, double scale, double scale2) {
+    double scaled = t * scale * scale2;
+    return scaled == 0 && t != 0 ? copysign(0x1p-1074, t) : scaled;
+}
+
 bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3], double t_min, double t_max,
                   uint32_t mask) {
     bool valid = t_min <= t_max;
@@ -32,9 +42,8 @@ bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3
         ray->origin[i] = origin[i];
         ray->direction[i] = direction[i] * ray->to_world * ray->to_world2;
     }
-    /* No further than where t in the caller's units is still a double: a hit must not look like a miss. */
-    ray->t_min = rgi_max(t_min, -DBL_MAX) * from_world * from_world2;
-    ray->t_max = rgi_min(t_max, DBL_MAX) * from_world * from_world2;
+    ray->t_min = scaled_limit(rgi_max(t_min, -DBL_MAX), from_world, from_world2);
+    ray->t_max = scaled_limit(rgi_min(t_max, DBL_MAX), from_world, from_world2);
     ray->dd = rgi_dot(ray->direction, ray->direction);
     ray->mask = mask;
     return true;

@@ -27,7 +27,8 @@ typedef struct grid_case {
     int most_decade; /* of the sizes: cells of a uniform grid that is never rebuilt list a large object very often */
 } grid_case;
 
-#define GRID(...) {.size = sizeof(rg_grid_config), __VA_ARGS__}
+#define GRID(...)                                                                                                    \
+    { .size = sizeof(rg_grid_config), __VA_ARGS__ }
 #define UNIFORM .kind = RG_GRID_UNIFORM
 #define HIERARCHICAL .kind = RG_GRID_HIERARCHICAL
 #define NEVER .rebuild_factor = RG_REBUILD_NEVER
@@ -110,12 +111,18 @@ static options read_options(int argc, char **argv) {
     options o = {.steps = 40000, .seed = 20001, .grid = "", .population = 300};
     for (int i = 1; i < argc; i += 2) {
         const char *value = i + 1 < argc ? argv[i + 1] : NULL;
-        if (value && strcmp(argv[i], "--steps") == 0) o.steps = strtoull(value, NULL, 0);
-        else if (value && strcmp(argv[i], "--seed") == 0) o.seed = strtoull(value, NULL, 0);
-        else if (value && strcmp(argv[i], "--grid") == 0) o.grid = value;
-        else if (value && strcmp(argv[i], "--population") == 0) o.population = (uint32_t)strtoul(value, NULL, 0);
-        else if (value && strcmp(argv[i], "--offset") == 0) o.offset = strtod(value, NULL);
-        else usage();
+        if (value && strcmp(argv[i], "--steps") == 0)
+            o.steps = strtoull(value, NULL, 0);
+        else if (value && strcmp(argv[i], "--seed") == 0)
+            o.seed = strtoull(value, NULL, 0);
+        else if (value && strcmp(argv[i], "--grid") == 0)
+            o.grid = value;
+        else if (value && strcmp(argv[i], "--population") == 0)
+            o.population = (uint32_t)strtoul(value, NULL, 0);
+        else if (value && strcmp(argv[i], "--offset") == 0)
+            o.offset = strtod(value, NULL);
+        else
+            usage();
     }
     return o;
 }

@@ -24,11 +24,18 @@ static void pick_origin(world *w, const double target[3], double size, double or
     double d[3], distance = 0;
     random_direction(&w->random, d);
     switch (random_below(&w->random, 10)) {
-    case 0: break; /* at the target, often inside something */
-    case 1: distance = size * random_decade(&w->random, 3, 9); break;
+    case 0:
+        break; /* at the target, often inside something */
+    case 1:
+        distance = size * random_decade(&w->random, 3, 9);
+        break;
     case 2:
-    case 3: distance = size * random_decade(&w->random, -2, 1); break;
-    default: distance = w->spread * random_between(&w->random, 0, 4); break;
+    case 3:
+        distance = size * random_decade(&w->random, -2, 1);
+        break;
+    default:
+        distance = w->spread * random_between(&w->random, 0, 4);
+        break;
     }
     if (random_once_in(&w->random, 5)) { /* along an axis, or in one of its planes */
         d[random_below(&w->random, 3)] = 0;
@@ -58,10 +65,18 @@ static void spoil(world *w, rg_ray *ray) {
     static const double BAD[] = {NAN, HUGE_VAL, -HUGE_VAL};
     double bad = BAD[random_below(&w->random, 3)];
     switch (random_below(&w->random, 4)) {
-    case 0: ray->origin[random_below(&w->random, 3)] = bad; break;
-    case 1: ray->direction[random_below(&w->random, 3)] = bad; break;
-    case 2: ray->t_min = NAN; break;
-    default: ray->direction[0] = ray->direction[1] = ray->direction[2] = 0; break;
+    case 0:
+        ray->origin[random_below(&w->random, 3)] = bad;
+        break;
+    case 1:
+        ray->direction[random_below(&w->random, 3)] = bad;
+        break;
+    case 2:
+        ray->t_min = NAN;
+        break;
+    default:
+        ray->direction[0] = ray->direction[1] = ray->direction[2] = 0;
+        break;
     }
 }
 

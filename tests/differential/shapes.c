@@ -42,8 +42,7 @@ static const reference_shape *add_mesh(world *w, const double *vertices, size_t 
     rg_mesh_views views = world_mesh_views(vertices, vertex_count, indices, triangle_count);
     rg_shape *shape = NULL;
     rg_result result = rg_shape_create_mesh(NULL, &views, &shape);
-    const reference_shape *reference =
-        reference_mesh(w->reference, vertices, vertex_count, indices, triangle_count);
+    const reference_shape *reference = reference_mesh(w->reference, vertices, vertex_count, indices, triangle_count);
     add(w, result, shape, reference, true);
     return reference;
 }
@@ -85,7 +84,9 @@ static int32_t user_occluded(void *user, const rg_local_ray *ray) {
     return reference_intersect(((const world_user *)user)->shape, ray, &hit);
 }
 
-static void user_destroy(void *user) { --*((world_user *)user)->alive; }
+static void user_destroy(void *user) {
+    --*((world_user *)user)->alive;
+}
 
 static void add_user(world *w, const reference_shape *reference, double radius, bool with_occluded) {
     world_user *user = &w->users[w->shape_count];
@@ -130,9 +131,9 @@ static void rotation(random_source *r, double m[9]) {
     double axis[3], angle = random_between(r, -3.2, 3.2);
     random_direction(r, axis);
     double s = sin(angle / 2), w = cos(angle / 2), x = s * axis[0], y = s * axis[1], z = s * axis[2];
-    const double q[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-                         2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                         2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    const double q[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                         2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                         2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
     memcpy(m, q, sizeof q);
 }
 
@@ -173,9 +174,14 @@ rg_pose world_pose(world *w, const world_shape *shape) {
     }
     if (!shape->finite) return pose;
     switch (random_below(&w->random, 4)) {
-    case 0: scaled_rotation(w, &pose); break;
-    case 1: sheared(w, &pose); break;
-    default: break;
+    case 0:
+        scaled_rotation(w, &pose);
+        break;
+    case 1:
+        sheared(w, &pose);
+        break;
+    default:
+        break;
     }
     return pose;
 }

@@ -202,13 +202,22 @@ void world_step(world *w, uint32_t population) {
     w->step++;
     if (count == 0 || count < population / 2) what %= 250;
     if (count > population + population / 2) what = 580 + what % 130;
-    if (what < 240) world_insert_one(w);
-    else if (what < 250) world_insert_many(w, many);
-    else if (what < 560) world_move_one(w);
-    else if (what < 580) world_move_many(w, many);
-    else if (what < 820) world_remove_one(w);
-    else if (what < 830) world_remove_many(w, many / 4 + 1);
-    else if (what < 990) set_mask(w);
-    else if (what < 997) misuse(w);
-    else rebuild_one(w);
+    if (what < 240)
+        world_insert_one(w);
+    else if (what < 250)
+        world_insert_many(w, many);
+    else if (what < 560)
+        world_move_one(w);
+    else if (what < 580)
+        world_move_many(w, many);
+    else if (what < 820)
+        world_remove_one(w);
+    else if (what < 830)
+        world_remove_many(w, many / 4 + 1);
+    else if (what < 990)
+        set_mask(w);
+    else if (what < 997)
+        misuse(w);
+    else
+        rebuild_one(w);
 }

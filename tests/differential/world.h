@@ -89,7 +89,7 @@ rg_ray world_ray(world *w);
 
 /* queries.c: each puts `count` random rays to both */
 void world_query_plain(world *w, uint32_t count);
-void world_query_views(world *w, uint32_t count);   /* by views, with culling */
+void world_query_views(world *w, uint32_t count);    /* by views, with culling */
 void world_query_filtered(world *w, uint32_t count); /* with a filter, and culling */
 
 /* books.c: stats, lookups, bounds, stale ids */

@@ -65,4 +65,6 @@ static void release(void *user, void *memory, size_t size, size_t alignment) {
     free(t->fields.raw);
 }
 
-rg_allocator test_allocator_hooks(test_allocator *books) { return (rg_allocator){books, allocate, release}; }
+rg_allocator test_allocator_hooks(test_allocator *books) {
+    return (rg_allocator){books, allocate, release};
+}

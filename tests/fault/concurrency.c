@@ -31,7 +31,9 @@ typedef struct shared {
     int movers_left, failures;
 } shared;
 
-static double lane_y(int lane) { return 5.0 * lane; }
+static double lane_y(int lane) {
+    return 5.0 * lane;
+}
 
 static void complain(shared *s, const char *what, double t) {
     pthread_mutex_lock(&s->lock);
@@ -92,7 +94,9 @@ static void *blink(void *argument) {
     return NULL;
 }
 
-static bool at(double t, double x) { return fabs(t - (x - 1 - FROM)) <= 0x1p-39; }
+static bool at(double t, double x) {
+    return fabs(t - (x - 1 - FROM)) <= 0x1p-39;
+}
 
 static void judge(shared *s, const rg_hit *hits) {
     for (int i = 0; i < RAYS; i++) {

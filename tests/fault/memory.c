@@ -60,7 +60,9 @@ static int32_t own_intersect(void *user, const rg_local_ray *ray, rg_local_hit *
     return 1;
 }
 
-static void own_destroy(void *user) { ++*(int *)user; }
+static void own_destroy(void *user) {
+    ++*(int *)user;
+}
 
 static rg_result make_scene(scenario *s, uint32_t workers) {
     rg_scene_config config = {.size = sizeof config, .workers = workers};
@@ -96,11 +98,16 @@ static rg_result make_shape(scenario *s, uint32_t which) {
     own.intersect = own_intersect;
     own.destroy = own_destroy;
     switch (which) {
-    case BALL: return rg_shape_create_sphere(&config, 1, &s->shapes[BALL]);
-    case CUBE: return rg_shape_create_box(&config, LO, HI, &s->shapes[CUBE]);
-    case PILL: return rg_shape_create_capsule(&config, LO, HI, 0.5, &s->shapes[PILL]);
-    case SOLID: return make_mesh(&config, &s->shapes[SOLID]);
-    default: return rg_shape_create_user(&config, &own, &s->shapes[OWN]);
+    case BALL:
+        return rg_shape_create_sphere(&config, 1, &s->shapes[BALL]);
+    case CUBE:
+        return rg_shape_create_box(&config, LO, HI, &s->shapes[CUBE]);
+    case PILL:
+        return rg_shape_create_capsule(&config, LO, HI, 0.5, &s->shapes[PILL]);
+    case SOLID:
+        return make_mesh(&config, &s->shapes[SOLID]);
+    default:
+        return rg_shape_create_user(&config, &own, &s->shapes[OWN]);
     }
 }
 
@@ -161,7 +168,9 @@ static rg_result move_many(scenario *s, uint32_t scale) {
     return rg_scene_move_many(s->scene, &ids, &views, MANY);
 }
 
-static rg_result set_mask(scenario *s, uint32_t mask) { return rg_scene_set_mask(s->scene, s->objects[3], mask); }
+static rg_result set_mask(scenario *s, uint32_t mask) {
+    return rg_scene_set_mask(s->scene, s->objects[3], mask);
+}
 
 static rg_result remove_one(scenario *s, uint32_t unused) {
     (void)unused;
@@ -260,8 +269,10 @@ static probe *baseline; /* what is seen after each turn if nothing fails */
 
 static void demand_same(const probe *seen, const probe *want, const step *what, uint32_t turn, const char *why) {
     if (memcmp(seen, want, sizeof *seen) == 0) return;
-    fprintf(stderr, "objects %" PRIu64 " for %" PRIu64 ", slots %" PRIu64 " for %" PRIu64 ", grids %" PRIu32
-            " for %" PRIu32 "\n", seen->objects, want->objects, seen->slots, want->slots, seen->grids, want->grids);
+    fprintf(stderr,
+            "objects %" PRIu64 " for %" PRIu64 ", slots %" PRIu64 " for %" PRIu64 ", grids %" PRIu32 " for %" PRIu32
+            "\n",
+            seen->objects, want->objects, seen->slots, want->slots, seen->grids, want->grids);
     for (int i = 0; i < PROBES; i++) {
         const rg_hit *a = &seen->hits[i], *b = &want->hits[i];
         if (memcmp(a, b, sizeof *a) == 0) continue;

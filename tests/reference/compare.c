@@ -38,8 +38,8 @@ static real distance_to(const object *o, const rg_ray *ray) {
 }
 
 /*
- * The e above. From more than 2^60 radii away even twice the digits of a double come to an end. Infinite boxes have no
- * near point to start from, so what a double resolves at their distance must do.
+ * The e above. From more than 2^60 radii away even twice the digits of a double come to an end. Infinite boxes have
+ * no near point to start from, so what a double resolves at their distance must do.
  */
 static real surface_bound(const object *o, const rg_ray *ray) {
     real part = isfinite(o->radius) ? 0x1p-100L : 0x1p-48L;
@@ -125,11 +125,13 @@ static bool right_weights(const object *o, const crossing *c, const rg_hit *got,
     return length(apart) <= 2 * bound + digits * edges;
 }
 
-/* origin + t * direction, rounded once; by the t reported or by the exact one. */
+/* origin + t * direction, rounded once; by the t reported or by the exact one. Where t or a component is
+ * denormal, that is not much. */
 static bool right_position(const rg_ray *ray, const rg_hit *got) {
+    real denormal = 0x1p-1022L + 0x1p-1072L * (1 + fabsl(got->t)) * fmaxl(1, direction_length(ray));
     for (int i = 0; i < 3; i++) {
         real along = (real)got->t * ray->direction[i], exact = ray->origin[i] + along;
-        real allowed = 0x1.01p-53L * (fabsl(exact) + fabsl(along)) + 0x1p-1022L;
+        real allowed = 0x1.01p-53L * (fabsl(exact) + fabsl(along)) + denormal;
         if (!(fabsl(got->position[i] - exact) <= allowed)) return false;
     }
     return true;
@@ -138,7 +140,7 @@ static bool right_position(const rg_ray *ray, const rg_hit *got) {
 /* Places, objects and ways may be so large that a float can't hold what would be needed. */
 static bool right_offset(const object *o, const rg_ray *ray, const rg_hit *got) {
     real most = o->world_radius * o->condition + fabsl(got->t) * direction_length(ray);
-    for (int i = 0; i < 3; i++) most = fmaxl(most, fabsl(got->position[i]));
+    for (int i = 0; i < 3; i++) most = fmaxl(most, fabsl(got->position[i]) + fabsl(o->pose.position[i]));
     return got->offset >= 0 && (isfinite(got->offset) || most > FLT_MAX || o->condition > 0x1p38L);
 }
 
@@ -162,6 +164,8 @@ static void try_certain(void *context, const crossing *c) {
     const judge *j = s->j;
     real normal[3], cosine = cosine_at(j->o, j->ray, c, normal);
     if (culled(j->cull, side_of(s->at, c))) return;
+    /* On an infinite box there are places of which doubles can't speak. */
+    if (fabsl(c->t) * j->unit > 0x1p1000L) return;
     real slack = t_bound(j->o, j->ray, c->t, cosine) / j->unit;
     real last = fminl(fminl(j->ray->t_max, s->until), DBL_MAX);
     if (c->t - slack >= fmaxl(j->ray->t_min, -DBL_MAX) && c->t + slack <= last) s->hit = true;
@@ -226,6 +230,8 @@ static const char *impossible(const object *o, const rg_ray *ray, rg_cull cull, 
     for (int i = 0; i < 3; i++) point[i] = at.base[i] + s * at.direction[i];
     if (!nearest_place(o->shape, got->primitive, point, &near)) return "no such primitive";
     for (int i = 0; i < 3; i++) apart[i] = near.point[i] - point[i];
+    /* Of a triangle thinner than e the place is all that can be told. */
+    if (near.thickness * o->stretch <= 8 * e && length_in_world(o, apart) <= 4 * e) return NULL;
     crossing c = {.t = got->t, .primitive = got->primitive, .u = near.u, .v = near.v};
     for (int i = 0; i < 3; i++) c.normal[i] = near.normal[i];
     real cosine = cosine_at(o, ray, &c, normal), along = t_bound(o, ray, got->t, 1) - e;

@@ -58,8 +58,12 @@ struct reference_scene {
 };
 
 /* vectors */
-static inline real dot(const real a[3], const real b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-static inline real length(const real a[3]) { return sqrtl(dot(a, a)); }
+static inline real dot(const real a[3], const real b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+static inline real length(const real a[3]) {
+    return sqrtl(dot(a, a));
+}
 static inline void cross(const real a[3], const real b[3], real out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
@@ -87,6 +91,7 @@ void cross_mesh(const reference_shape *shape, const line *at, crossing_visitor *
 typedef struct place {
     real point[3], normal[3]; /* the normal of any length, outward */
     real u, v;
+    real thickness; /* of a triangle: its least height; of others +inf */
 } place;
 
 /* nearest.c */

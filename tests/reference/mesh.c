@@ -54,7 +54,9 @@ static shear shear_of(const line *at) {
 
 /* Twice the area that the line's foot spans with an edge. Exactly the negative if the edge runs the other way, since
  * products commute and a - b is rounded as -(b - a): so no line slips between two triangles that share an edge. */
-static real edge(const real p[2], const real q[2]) { return p[0] * q[1] - p[1] * q[0]; }
+static real edge(const real p[2], const real q[2]) {
+    return p[0] * q[1] - p[1] * q[0];
+}
 
 static void cross_triangle(const real v[3][3], const shear *s, const line *at, uint32_t primitive,
                            crossing_visitor *visit, void *context) {
@@ -64,7 +66,7 @@ static void cross_triangle(const real v[3][3], const shear *s, const line *at, u
         flat[k][1] = v[k][s->y] - s->per_y * v[k][s->z];
     }
     real wa = edge(flat[1], flat[2]), wb = edge(flat[2], flat[0]), wc = edge(flat[0], flat[1]);
-    bool some_negative = wa < 0 || wb < 0 || wc < 0, some_positive = wa > 0 || wb > 0 || wc > 0;
+    bool some_negative = wa < 0 || wb < 0 || wc<0, some_positive = wa> 0 || wb > 0 || wc > 0;
     if (some_negative == some_positive) return; /* outside, or the line lies in the triangle's plane */
     real ab[3], ac[3], normal[3];
     for (int i = 0; i < 3; i++) ab[i] = v[1][i] - v[0][i], ac[i] = v[2][i] - v[0][i];

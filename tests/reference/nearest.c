@@ -2,7 +2,9 @@
 /* nearest.c: how far a point is from a surface, and a line from the edges of a shape. */
 #include "internal.h"
 
-static real clamped(real x, real lo, real hi) { return fminl(fmaxl(x, lo), hi); }
+static real clamped(real x, real lo, real hi) {
+    return fminl(fmaxl(x, lo), hi);
+}
 
 static bool near_round(const reference_shape *shape, const real p[3], place *near) {
     real axis[3], from[3], foot[3];
@@ -69,15 +71,19 @@ static bool near_triangle(const reference_shape *shape, uint32_t triangle, const
     real v[3][3], ab[3], ac[3];
     if (triangle >= shape->triangle_count) return false;
     corners(shape, triangle, v);
+    for (int k = 0; k < 3; k++) {
+        /* Two corners in one place: never hit, whatever the bounds. */
+        if (distance(v[k], v[(k + 1) % 3]) == 0) return false;
+    }
     for (int i = 0; i < 3; i++) ab[i] = v[1][i] - v[0][i], ac[i] = v[2][i] - v[0][i];
     cross(ab, ac, near->normal);
-    if (length(near->normal) == 0) return false;
     near_in_triangle((const real(*)[3])v, near->normal, p, near);
+    near->thickness = length(near->normal) / fmaxl(fmaxl(length(ab), length(ac)), distance(v[1], v[2]));
     return true;
 }
 
 bool nearest_place(const reference_shape *shape, uint32_t primitive, const real p[3], place *near) {
-    *near = (place){.u = 0};
+    *near = (place){.thickness = HUGE_VALL};
     if (shape->kind == RG_SHAPE_BOX) return near_face(shape, primitive, p, near);
     if (shape->kind == RG_SHAPE_MESH) return near_triangle(shape, primitive, p, near);
     return primitive == 0 && near_round(shape, p, near);

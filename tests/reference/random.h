@@ -29,7 +29,9 @@ static inline double random_between(random_source *r, double lo, double hi) {
 }
 
 /** True once in n times. */
-static inline bool random_once_in(random_source *r, uint32_t n) { return random_below(r, n) == 0; }
+static inline bool random_once_in(random_source *r, uint32_t n) {
+    return random_below(r, n) == 0;
+}
 
 /** 10 to the power of something between lo and hi. Made of exact steps and one product: no libm, no differences. */
 static inline double random_decade(random_source *r, int lo, int hi) {

@@ -25,7 +25,9 @@ static void *resized(void *memory, size_t bytes) {
     return memory;
 }
 
-reference_scene *reference_create(void) { return reference_allocate(1, sizeof(reference_scene)); }
+reference_scene *reference_create(void) {
+    return reference_allocate(1, sizeof(reference_scene));
+}
 
 void reference_destroy(reference_scene *scene) {
     if (!scene) return;
@@ -92,7 +94,9 @@ void reference_move(reference_scene *scene, rg_object id, const rg_pose *pose) {
     prepare_object(o);
 }
 
-void reference_set_mask(reference_scene *scene, rg_object id, uint32_t mask) { known_object(scene, id)->mask = mask; }
+void reference_set_mask(reference_scene *scene, rg_object id, uint32_t mask) {
+    known_object(scene, id)->mask = mask;
+}
 
 void reference_remove(reference_scene *scene, rg_object id) {
     object *o = known_object(scene, id), *last = &scene->objects[--scene->count];
@@ -102,15 +106,23 @@ void reference_remove(reference_scene *scene, rg_object id) {
     scene->index_of_slot[RG_OBJECT_SLOT(o->id)] = (uint32_t)(o - scene->objects);
 }
 
-bool reference_has(const reference_scene *scene, rg_object id) { return find_object(scene, id) != NULL; }
-size_t reference_count(const reference_scene *scene) { return scene->count; }
-rg_object reference_object(const reference_scene *scene, size_t index) { return scene->objects[index].id; }
+bool reference_has(const reference_scene *scene, rg_object id) {
+    return find_object(scene, id) != NULL;
+}
+size_t reference_count(const reference_scene *scene) {
+    return scene->count;
+}
+rg_object reference_object(const reference_scene *scene, size_t index) {
+    return scene->objects[index].id;
+}
 
 const rg_pose *reference_pose(const reference_scene *scene, rg_object id) {
     return &known_object_const(scene, id)->pose;
 }
 
-uint32_t reference_mask(const reference_scene *scene, rg_object id) { return known_object_const(scene, id)->mask; }
+uint32_t reference_mask(const reference_scene *scene, rg_object id) {
+    return known_object_const(scene, id)->mask;
+}
 
 /* ------------------------------------------------------------------------------------------------- bounds */
 
@@ -147,9 +159,15 @@ void reference_bounds(const reference_scene *scene, rg_object id, double lo[3], 
         const float *row = o->pose.linear + 3 * i;
         real least = 0, most = 0;
         switch (o->shape->kind) {
-        case RG_SHAPE_BOX: box_extent(o->shape, row, &least, &most); break;
-        case RG_SHAPE_MESH: mesh_extent(o->shape, row, &least, &most); break;
-        default: round_extent(o->shape, row, &least, &most); break;
+        case RG_SHAPE_BOX:
+            box_extent(o->shape, row, &least, &most);
+            break;
+        case RG_SHAPE_MESH:
+            mesh_extent(o->shape, row, &least, &most);
+            break;
+        default:
+            round_extent(o->shape, row, &least, &most);
+            break;
         }
         lo[i] = (double)(o->pose.position[i] + least);
         hi[i] = (double)(o->pose.position[i] + most);

@@ -10,8 +10,12 @@
 static reference_scene *scene;
 static const rg_object FIRST = (rg_object)1 << 32, SECOND = (rg_object)1 << 32 | 1;
 
-static void setup(void) { scene = reference_create(); }
-static void teardown(void) { reference_destroy(scene); }
+static void setup(void) {
+    scene = reference_create();
+}
+static void teardown(void) {
+    reference_destroy(scene);
+}
 
 static rg_pose pose_at(double x, double y, double z) {
     return (rg_pose){{x, y, z}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
@@ -242,7 +246,9 @@ END_TEST
 
 /* -------------------------------------------------------------------------------------------------- compare */
 
-static int judged(rg_ray ray, rg_hit got) { return reference_compare(scene, &ray, RG_CULL_NONE, &got, NULL); }
+static int judged(rg_ray ray, rg_hit got) {
+    return reference_compare(scene, &ray, RG_CULL_NONE, &got, NULL);
+}
 
 START_TEST(compare_tells_right_from_wrong) {
     insert(FIRST, reference_sphere(scene, 1), pose_at(10, 0.25, 0));

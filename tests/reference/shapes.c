@@ -61,7 +61,9 @@ typedef struct interval {
 
 static const interval nowhere = {HUGE_VALL, -HUGE_VALL};
 
-static interval both(interval a, interval b) { return (interval){fmaxl(a.in, b.in), fminl(a.out, b.out)}; }
+static interval both(interval a, interval b) {
+    return (interval){fmaxl(a.in, b.in), fminl(a.out, b.out)};
+}
 
 /* The hull of two parts, of which either may be empty. */
 static interval hull(interval a, interval b) {
@@ -166,9 +168,17 @@ static void cross_capsule(const reference_shape *shape, const line *at, crossing
 
 void cross_shape(const reference_shape *shape, const line *at, crossing_visitor *visit, void *context) {
     switch (shape->kind) {
-    case RG_SHAPE_SPHERE: cross_sphere(shape, at, visit, context); break;
-    case RG_SHAPE_BOX: cross_box(shape, at, visit, context); break;
-    case RG_SHAPE_CAPSULE: cross_capsule(shape, at, visit, context); break;
-    default: cross_mesh(shape, at, visit, context); break;
+    case RG_SHAPE_SPHERE:
+        cross_sphere(shape, at, visit, context);
+        break;
+    case RG_SHAPE_BOX:
+        cross_box(shape, at, visit, context);
+        break;
+    case RG_SHAPE_CAPSULE:
+        cross_capsule(shape, at, visit, context);
+        break;
+    default:
+        cross_mesh(shape, at, visit, context);
+        break;
     }
 }

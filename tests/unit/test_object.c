@@ -77,6 +77,28 @@ START_TEST(invalid_rays) {
 }
 END_TEST
 
+/* The smallest t_min above 0 is above 0 in any scale: the hit at 0 is out of range. */
+START_TEST(smallest_limits) {
+    rgi_object object = object_at(0, 0, 0);
+    const double origin[3] = {-1, 0, 0}, smallest = nextafter(0, 1);
+    for (int e = -40; e <= 40; e++) {
+        const double d[3] = {ldexp(1, e), 0, 0};
+        rgi_ray ray;
+        rgi_local_ray local;
+        rgi_candidate c;
+        memset(&local, 0, sizeof local);
+        ck_assert(rgi_ray_init(&ray, origin, d, smallest, INFINITY, 1));
+        ck_assert(ray.t_min > 0);
+        local.t_min = ray.t_min;
+        local.t_max = ray.t_max;
+        local.sides = RGI_FRONT | RGI_BACK;
+        ck_assert(rgi_object_intersect(&object, NULL, &ray, &local, &c));
+        ck_assert(rgi_world_t(&ray, c.t) == ldexp(2, -e));
+        ck_assert(rgi_ray_init(&ray, origin, d, -1, -smallest, 1) && ray.t_max < 0);
+    }
+}
+END_TEST
+
 /* NUMERICS, cases 1 and 2: whether a ray hits is right from any distance. The ray runs along an axis that doubles
  * resolve exactly, so the impact is known without rounding. */
 START_TEST(from_any_distance) {
@@ -115,6 +137,7 @@ Suite *unit_suite(void) {
     tcase_add_checked_fixture(tests, setup, teardown);
     tcase_add_test(tests, directions_of_any_length);
     tcase_add_test(tests, invalid_rays);
+    tcase_add_test(tests, smallest_limits);
     tcase_add_test(tests, from_any_distance);
     suite_add_tcase(suite, tests);
     return suite;
