@@ -11,8 +11,8 @@
  *   - Structs that start with a `size` field are filled by their default function, or zeroed by hand and given
  *     their size: in every such struct the value 0 means "the default". They only ever grow at the end. A struct
  *     that is larger than this library knows is accepted as long as all bytes beyond what it knows are zero.
- *     Structs without a size (rg_allocator, the views of fields, rg_pose, rg_ray, rg_hit, and what callbacks see)
- * never change within a major version.
+ *     Structs without a size (rg_allocator, views of fields, rg_pose, rg_ray, rg_hit, and what callbacks see) never
+ *     change within a major version.
  *   - Nothing here needs alignment beyond that of the C types.
  *   - The library has no global state, makes no threads but the workers of a scene, installs no handlers, reads no
  *     environment variables, never prints and never ends the process.
