@@ -15,6 +15,10 @@ static double power_of_two(int e) {
     return value;
 }
 
+/* Farther along the ray than any object reaches but infinite boxes (raygrid/shape.h, RG_COORDINATE_MAX): so positions
+ * of hits stay far from overflow. */
+#define FARTHEST 0x1p340
+
 /*
  * A limit of t in scaled units. What underflows keeps its sign: t = 0 is out of the range of a ray that starts at the
  * smallest t above it. The caller has clipped it to where t in its own units is a double: a hit must not look like a
@@ -42,8 +46,8 @@ bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3
         ray->origin[i] = origin[i];
         ray->direction[i] = direction[i] * ray->to_world * ray->to_world2;
     }
-    ray->t_min = scaled_limit(rgi_max(t_min, -DBL_MAX), from_world, from_world2);
-    ray->t_max = scaled_limit(rgi_min(t_max, DBL_MAX), from_world, from_world2);
+    ray->t_min = rgi_max(scaled_limit(rgi_max(t_min, -DBL_MAX), from_world, from_world2), -FARTHEST);
+    ray->t_max = rgi_min(scaled_limit(rgi_min(t_max, DBL_MAX), from_world, from_world2), FARTHEST);
     ray->dd = rgi_dot(ray->direction, ray->direction);
     ray->mask = mask;
     return true;

@@ -38,7 +38,8 @@ typedef struct rg_ray {
     double origin[3];
     double direction[3]; /* any length but 0 */
     double t_min;        /* may be negative or -infinity */
-    double t_max;        /* may be +infinity; what lies at a t beyond the largest double is not hit */
+    double t_max;        /* may be +infinity. What lies at a t beyond the largest double, or farther away than 2e102,
+                            as only infinite boxes may, is not hit. */
     uint32_t mask;       /* sees objects with (object mask & mask) != 0 */
     uint32_t reserved;   /* ignored */
 } rg_ray;

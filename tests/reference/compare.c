@@ -272,6 +272,8 @@ static const char *judge_hit(const reference_scene *scene, const rg_ray *ray, rg
     if (!(got->t >= ray->t_min && got->t <= ray->t_max)) return "t out of the ray's range";
     if (!right_position(ray, got)) return "position";
     if (!right_offset(o, ray, got)) return "offset";
+    /* So far away that trace.h promises nothing. */
+    if (distance_to(o, ray) > 0x1p60L * o->world_radius) return NULL;
     /* A linear part of such a condition leaves nothing that a bound could say. */
     if (surface_bound(o, ray) >= o->world_radius / 4 && o->condition > 0x1p38L) return NULL;
     judge j = judge_of(o, ray, cull);
@@ -312,6 +314,8 @@ reference_verdict reference_compare(const reference_scene *scene, const rg_ray *
         if (is_clean_miss(got) && isnan(got->t)) return REFERENCE_EQUAL;
         return verdict(error, "not the mark of an invalid ray");
     }
+    rg_ray near = within_reach(ray);
+    ray = &near;
     bool hit = reference_trace(scene, ray, cull, &want);
     if (got->object == RG_NO_OBJECT) {
         if (!is_clean_miss(got) || got->t != HUGE_VAL) return verdict(error, "not the mark of a miss");
@@ -362,6 +366,8 @@ reference_verdict reference_compare_occluded(const reference_scene *scene, const
                                              bool got) {
     if (reference_occluded(scene, ray, cull) == got) return REFERENCE_EQUAL;
     if (!reference_valid(ray)) return REFERENCE_WRONG;
+    rg_ray near = within_reach(ray);
+    ray = &near;
     if (!got) return objection(scene, ray, cull, NULL, HUGE_VALL) ? REFERENCE_WRONG : REFERENCE_WITHIN_BOUND;
     for (size_t i = 0; i < scene->count; i++) {
         const object *o = &scene->objects[i];

@@ -104,6 +104,8 @@ void edges_of(const reference_shape *shape, const line *at, edge_visitor *visit,
 
 /* reference.c */
 const object *find_object(const reference_scene *scene, rg_object id);
+/** The ray with its range cut to where it may hit anything: see t_max of rg_ray in raygrid/trace.h. */
+rg_ray within_reach(const rg_ray *ray);
 /** -1 if the line enters through the surface's front there, 1 if through its back, 0 if it grazes it. */
 int side_of(const line *at, const crossing *where);
 static inline bool culled(rg_cull cull, int side) {

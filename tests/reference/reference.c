@@ -185,6 +185,17 @@ bool reference_valid(const rg_ray *ray) {
     return moves && ray->t_min <= ray->t_max; /* false for NaN as well */
 }
 
+/* 2^340, a little more than 2e102, in units of the direction's largest component rounded down to a power of two. */
+rg_ray within_reach(const rg_ray *ray) {
+    rg_ray near = *ray;
+    int exponent;
+    frexp(fmax(fmax(fabs(ray->direction[0]), fabs(ray->direction[1])), fabs(ray->direction[2])), &exponent);
+    double reach = ldexp(1, 341 - exponent);
+    near.t_min = fmax(ray->t_min, -reach);
+    near.t_max = fmin(ray->t_max, reach);
+    return near;
+}
+
 int side_of(const line *at, const crossing *where) {
     real facing = dot(at->direction, where->normal);
     return (facing > 0) - (facing < 0);
@@ -229,12 +240,13 @@ bool reference_trace(const reference_scene *scene, const rg_ray *ray, rg_cull cu
     const object *best_object = NULL;
     crossing best = {0};
     bool valid = reference_valid(ray);
+    rg_ray near = within_reach(ray);
     for (size_t i = 0; valid && i < scene->count; i++) {
         const object *o = &scene->objects[i];
         crossing c;
         line at;
         if (!(o->mask & ray->mask) || passes_by(o, ray, 0)) continue;
-        if (!closest_of_object(o, ray, cull, &c, &at)) continue;
+        if (!closest_of_object(o, &near, cull, &c, &at)) continue;
         if (best_object && (c.t > best.t || (c.t == best.t && o->id > best_object->id))) continue;
         best_object = o;
         best = c;
@@ -246,12 +258,13 @@ bool reference_trace(const reference_scene *scene, const rg_ray *ray, rg_cull cu
 
 bool reference_occluded(const reference_scene *scene, const rg_ray *ray, rg_cull cull) {
     if (!reference_valid(ray)) return false;
+    rg_ray near = within_reach(ray);
     for (size_t i = 0; i < scene->count; i++) {
         const object *o = &scene->objects[i];
         crossing c;
         line at;
         if (!(o->mask & ray->mask) || passes_by(o, ray, 0)) continue;
-        if (closest_of_object(o, ray, cull, &c, &at)) return true;
+        if (closest_of_object(o, &near, cull, &c, &at)) return true;
     }
     return false;
 }

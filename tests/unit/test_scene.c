@@ -266,6 +266,26 @@ START_TEST(bulk_calls_are_whole_or_nothing) {
 }
 END_TEST
 
+/* A ray all but parallel to an endless plane: hits up to 2e102 away have finite positions, beyond there are none. */
+START_TEST(endless_planes) {
+    const double lo[3] = {-INFINITY, -1, -INFINITY}, hi[3] = {INFINITY, 0, INFINITY};
+    rg_shape *plane;
+    rg_object id;
+    ck_assert_int_eq(rg_shape_create_box(NULL, lo, hi, &plane), RG_OK);
+    ck_assert_int_eq(rg_scene_insert(scene, plane, NULL, &id), RG_OK);
+    for (int e = 0; e >= -307; e--) {
+        double slope = pow(10, e);
+        rg_hit hit = trace(scene, rg_ray_from((double[]){0, 1, 0}, (double[]){1, -slope, 0}));
+        ck_assert_uint_eq(hit.object, e >= -102 ? id : RG_NO_OBJECT);
+        if (e < -102) continue;
+        ck_assert_double_le(fabs(hit.t * slope - 1), 1e-15);
+        ck_assert_double_le(fabs(hit.position[0] * slope - 1), 1e-15);
+        ck_assert(fabs(hit.position[1]) <= 1e-15 && hit.normal[1] == 1);
+    }
+    rg_shape_release(&plane);
+}
+END_TEST
+
 START_TEST(views_of_poses) {
     struct {
         int32_t before;
@@ -440,6 +460,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, the_hosts_own_parallel_for);
     tcase_add_test(tests, ids);
     tcase_add_test(tests, bulk_calls_are_whole_or_nothing);
+    tcase_add_test(tests, endless_planes);
     tcase_add_test(tests, views_of_poses);
     tcase_add_test(tests, columns_in_double_are_rounded);
     tcase_add_test(tests, several_grids);
