@@ -37,6 +37,11 @@ static real distance_to(const object *o, const rg_ray *ray) {
     return length(from);
 }
 
+/* So far away that trace.h promises nothing. */
+static bool is_too_far(const object *o, const rg_ray *ray) {
+    return distance_to(o, ray) > 0x1p60L * o->world_radius;
+}
+
 /*
  * The e above. From more than 2^60 radii away even twice the digits of a double come to an end. Infinite boxes have
  * no near point to start from, so what a double resolves at their distance must do.
@@ -257,7 +262,7 @@ static const char *objection(const reference_scene *scene, const rg_ray *ray, rg
         const object *o = &scene->objects[i];
         if (!(o->mask & ray->mask)) continue;
         if (hit && o->id < hit->id && same_place(o, hit)) return "a lower id at the very same place";
-        if (passes_by(o, ray, 2 * surface_bound(o, ray))) continue;
+        if (is_too_far(o, ray) || passes_by(o, ray, 2 * surface_bound(o, ray))) continue;
         judge j = judge_of(o, ray, cull);
         if (certainly_hit(&j, until)) return hit ? "a certain hit lies before it" : "a certain hit missed";
     }
@@ -272,8 +277,7 @@ static const char *judge_hit(const reference_scene *scene, const rg_ray *ray, rg
     if (!(got->t >= ray->t_min && got->t <= ray->t_max)) return "t out of the ray's range";
     if (!right_position(ray, got)) return "position";
     if (!right_offset(o, ray, got)) return "offset";
-    /* So far away that trace.h promises nothing. */
-    if (distance_to(o, ray) > 0x1p60L * o->world_radius) return NULL;
+    if (is_too_far(o, ray)) return NULL;
     /* A linear part of such a condition leaves nothing that a bound could say. */
     if (surface_bound(o, ray) >= o->world_radius / 4 && o->condition > 0x1p38L) return NULL;
     judge j = judge_of(o, ray, cull);
@@ -373,7 +377,7 @@ reference_verdict reference_compare_occluded(const reference_scene *scene, const
         const object *o = &scene->objects[i];
         if (!(o->mask & ray->mask) || passes_by(o, ray, 2 * surface_bound(o, ray))) continue;
         judge j = judge_of(o, ray, cull);
-        if (possibly_hit(&j)) return REFERENCE_WITHIN_BOUND;
+        if (is_too_far(o, ray) || possibly_hit(&j)) return REFERENCE_WITHIN_BOUND;
     }
     return REFERENCE_WRONG;
 }
