@@ -30,10 +30,6 @@ static inline void rgi_transform(const double m[9], const double v[3], double ou
     for (int i = 0; i < 3; i++) out[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
 }
 
-static inline void rgi_transform_float(const float m[9], const double v[3], double out[3]) {
-    for (int i = 0; i < 3; i++) out[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
-}
-
 /** out = transposed M v; with the inverse of a pose, takes local normals to the world. */
 static inline void rgi_transform_transposed(const double m[9], const double v[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = m[i] * v[0] + m[3 + i] * v[1] + m[6 + i] * v[2];

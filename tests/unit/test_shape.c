@@ -23,6 +23,10 @@ static void surface_point(const rg_shape *shape, double out[3]) {
         out[i] = n[i] / length * radius + (shape->kind == RG_SHAPE_SPHERE ? 0 : c->a[i] + along * c->axis[i]);
 }
 
+static void transform(const float m[9], const double v[3], double out[3]) {
+    for (int i = 0; i < 3; i++) out[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
+}
+
 /* Under any pose, world boxes hold the surface, and those of spheres and capsules hold little else. */
 static void check_bounds(const rg_shape *shape) {
     for (int i = 0; i < 200; i++) {
@@ -36,7 +40,7 @@ static void check_bounds(const rg_shape *shape) {
         for (int k = 0; k < 500; k++) {
             double local[3], world[3];
             surface_point(shape, local);
-            rgi_transform_float(matrix ? matrix : rgi_identity, local, world);
+            transform(matrix ? matrix : rgi_identity, local, world);
             for (int a = 0; a < 3; a++) {
                 world[a] += position[a];
                 ck_assert(world[a] >= lo[a] && world[a] <= hi[a]);
