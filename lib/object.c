@@ -87,5 +87,7 @@ bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, co
         rgi_copy(oc, local->origin);
         rgi_copy(ray->direction, local->direction);
     }
+    if (object->shape->kind == RG_SHAPE_SPHERE && !linear)
+        return rgi_sphere_intersect(object->reach, local, candidate);
     return rgi_shape_intersect(object->shape, local, candidate);
 }

@@ -16,8 +16,9 @@ typedef struct rgi_object {
     uint32_t generation;
     rg_shape *shape;
     double position[3];
-    double reach;    /* the object is within this distance of its position; may be infinite */
-    uint32_t linear; /* record of its linear part, or RGI_NONE for the identity */
+    double reach;    /* the object is within this distance of its position; may be infinite. Of a sphere without
+                        a linear part exactly its radius. */
+    uint32_t linear; /* record of its linear part and scale, or RGI_NONE: it has none */
     uint32_t mask;
     uint32_t grid;   /* index of its grid */
     uint32_t member; /* its record there */

@@ -13,6 +13,7 @@ rg_pose rg_pose_at(double x, double y, double z) {
     memset(&pose, 0, sizeof pose);
     rgi_set(pose.position, x, y, z);
     memcpy(pose.linear, rgi_identity, sizeof pose.linear);
+    pose.scale = 1;
     return pose;
 }
 
@@ -32,12 +33,18 @@ rg_result rgi_check_position(const double position[3]) {
     return RG_OK;
 }
 
+rg_result rgi_check_scale(double scale) {
+    if (scale >= RG_RADIUS_MIN && scale <= RG_COORDINATE_MAX) return RG_OK;
+    return rgi_fail(RG_INVALID_VALUE, "scale of the pose is %g, not in [%g, %g]", scale, RG_RADIUS_MIN,
+                    RG_COORDINATE_MAX);
+}
+
 /*
  * The inverse by cofactors. Products of two floats are exact in double, so the cofactors have one rounding and the
  * determinant an error below 2^-50 of the product of the rows' lengths (Hadamard's bound on it): against 2^-40 of
  * that product, what counts as singular is decided safely.
  */
-rg_result rgi_linear_init(rgi_linear *linear, const float matrix[9]) {
+rg_result rgi_linear_init(rgi_linear *linear, const float matrix[9], double scale) {
     double rows[3][3], cofactors[3][3], lengths = 1;
     for (int i = 0; i < 9; i++) {
         if (!isfinite(matrix[i]))
@@ -53,8 +60,12 @@ rg_result rgi_linear_init(rgi_linear *linear, const float matrix[9]) {
     if (!(fabs(determinant) > 0x1p-40 * lengths))
         return rgi_fail(RG_INVALID_VALUE, "the pose is singular: its linear part has determinant %g", determinant);
     memcpy(linear->matrix, matrix, sizeof linear->matrix);
+    linear->scale = scale;
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) linear->inverse[3 * i + j] = cofactors[j][i] / determinant;
+        for (int j = 0; j < 3; j++) {
+            linear->product[3 * i + j] = scale * matrix[3 * i + j];
+            linear->inverse[3 * i + j] = cofactors[j][i] / determinant / scale;
+        }
     }
     return RG_OK;
 }

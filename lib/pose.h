@@ -7,18 +7,23 @@
 
 #include <stdbool.h>
 
-/** A linear part that is not the identity, with its inverse. */
+/** A linear part with its scale, and their product's inverse. */
 typedef struct rgi_linear {
     uint32_t link; /* of the list of free records */
     float matrix[9];
-    double inverse[9];
+    double scale;
+    double product[9]; /* scale * matrix */
+    double inverse[9]; /* of the product */
 } rgi_linear;
 
 /** RG_INVALID_VALUE if the position is not finite or too large. */
 rg_result rgi_check_position(const double position[3]);
 
-/** Inverts a linear part; RG_INVALID_VALUE if it is not finite or singular. */
-rg_result rgi_linear_init(rgi_linear *linear, const float matrix[9]);
+/** RG_INVALID_VALUE if the scale is not in its range. */
+rg_result rgi_check_scale(double scale);
+
+/** Inverts a linear part with a scale that was checked; RG_INVALID_VALUE if it is not finite or singular. */
+rg_result rgi_linear_init(rgi_linear *linear, const float matrix[9], double scale);
 
 bool rgi_is_identity(const float matrix[9]);
 

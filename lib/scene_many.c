@@ -14,19 +14,27 @@
 
 enum { INSERT_LEAST = sizeof(rg_insert_views), POSES_LEAST = sizeof(rg_pose_views) };
 
-/* The i-th of views of poses. Without columns: `object`'s linear part, or the identity if there is no object. */
+/* The i-th of views of poses. What is not given: as `object` has it, or as rg_pose_at if there is no object. */
 static rg_result place_view(const rg_scene *scene, const rg_pose_views *views, uint64_t i, const rg_shape *shape,
                             const rgi_object *object, rgi_placing *p) {
-    double position[3], column[3];
-    float matrix[9];
+    double position[3], column[3], scale = 1;
+    float given[9];
+    const float *matrix = rgi_identity;
     rgi_load3(&views->position, i, position);
-    if (!views->column[0].x)
-        return object ? rgi_place_at(scene, object, position, p) : rgi_place(shape, position, rgi_identity, p);
-    for (int j = 0; j < 3; j++) {
-        rgi_load3(&views->column[j], i, column);
-        for (int r = 0; r < 3; r++) matrix[3 * r + j] = (float)column[r];
+    if (object) {
+        if (!views->column[0].x && !views->scale.data) return rgi_place_at(scene, object, position, p);
+        const rgi_linear *linear = rgi_scene_linear(scene, object);
+        scale = rgi_object_scale(object, linear);
+        if (linear) matrix = linear->matrix;
     }
-    return rgi_place(shape, position, matrix, p);
+    if (views->column[0].x) {
+        for (int j = 0; j < 3; j++) {
+            rgi_load3(&views->column[j], i, column);
+            for (int r = 0; r < 3; r++) given[3 * r + j] = (float)column[r];
+        }
+        matrix = given;
+    }
+    return rgi_place(shape, position, matrix, rgi_load(&views->scale, i, scale), p);
 }
 
 rg_result rg_pose_views_of(rg_pose_views *views, size_t size, const rg_pose *poses, ptrdiff_t stride) {
@@ -36,6 +44,7 @@ rg_result rg_pose_views_of(rg_pose_views *views, size_t size, const rg_pose *pos
     v.position = rg_input3_packed(poses->position, stride, RG_F64);
     for (int j = 0; j < 3; j++)
         v.column[j] = (rg_input3){poses->linear + j, poses->linear + 3 + j, poses->linear + 6 + j, stride, RG_F32};
+    v.scale = (rg_input){&poses->scale, stride, RG_F64};
     return rgi_struct_default(&v, sizeof v, POSES_LEAST, views, size, "rg_pose_views");
 }
 
@@ -48,6 +57,7 @@ static rg_result check_poses(const rg_pose_views *views) {
         if (!result && !v->x != !views->column[0].x)
             result = rgi_fail(RG_INVALID_ARGUMENT, "poses.column: some of the three columns are given, not all");
     }
+    if (!result) result = rgi_check_view(views->scale.data, views->scale.type, RGI_FLOATS, 0, "poses.scale");
     return result;
 }
 

@@ -11,9 +11,8 @@
 
 enum { REPORT_LEAST = sizeof(rg_object_report) };
 
-/* The distance from the position to the farthest corner of the world box; a sphere's own radius is less. */
-static double reach_of(const rg_shape *shape, const rgi_placing *p) {
-    if (shape->kind == RG_SHAPE_SPHERE && !p->is_linear) return shape->of.radius;
+/* The distance from the position to the farthest corner of the world box. */
+static double reach_of(const rgi_placing *p) {
     double far[3];
     for (int a = 0; a < 3; a++) far[a] = rgi_max(fabs(p->lo[a] - p->position[a]), fabs(p->hi[a] - p->position[a]));
     double largest = rgi_max_magnitude(far);
@@ -22,27 +21,47 @@ static double reach_of(const rg_shape *shape, const rgi_placing *p) {
 
 static rg_result derive(const rg_shape *shape, rgi_placing *p) {
     rg_result result = rgi_check_position(p->position);
-    if (!result) result = rgi_shape_bounds(shape, p->position, p->is_linear ? p->linear.matrix : NULL, p->lo, p->hi);
-    if (!result) p->reach = reach_of(shape, p);
+    if (result) return result;
+    bool ball = shape->kind == RG_SHAPE_SPHERE && !p->is_linear;
+    result = ball ? rgi_ball_bounds(p->radius, p->position, p->lo, p->hi)
+                  : rgi_shape_bounds(shape, p->position, p->is_linear ? p->linear.product : NULL, p->lo, p->hi);
+    if (!result) p->reach = ball ? p->radius : reach_of(p);
     return result;
 }
 
-rg_result rgi_place(const rg_shape *shape, const double position[3], const float matrix[9], rgi_placing *p) {
+/*
+ * Whether the object needs no record of its linear part: a shape that is only moved, or a sphere that has also been
+ * given a size, from which the scale can be told again to the last bit.
+ */
+static bool is_plain(const rg_shape *shape, const float matrix[9], double scale, double radius) {
+    if (!rgi_is_identity(matrix)) return false;
+    return scale == 1 || (shape->kind == RG_SHAPE_SPHERE && radius / shape->of.radius == scale);
+}
+
+rg_result rgi_place(const rg_shape *shape, const double position[3], const float matrix[9], double scale,
+                    rgi_placing *p) {
+    rg_result result = scale == 0 ? RG_OK : rgi_check_scale(scale);
+    if (result) return result;
+    if (scale == 0) scale = 1;
     rgi_copy(position, p->position);
-    p->is_linear = !rgi_is_identity(matrix);
-    if (p->is_linear) {
-        rg_result result = rgi_linear_init(&p->linear, matrix);
-        if (result) return result;
-    }
-    return derive(shape, p);
+    p->radius = shape->kind == RG_SHAPE_SPHERE ? shape->of.radius * scale : 0;
+    p->is_linear = !is_plain(shape, matrix, scale, p->radius);
+    if (p->is_linear) result = rgi_linear_init(&p->linear, matrix, scale);
+    return result ? result : derive(shape, p);
 }
 
 rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3], rgi_placing *p) {
     const rgi_linear *linear = rgi_scene_linear(scene, object);
     rgi_copy(position, p->position);
+    p->radius = object->reach;
     p->is_linear = linear != NULL;
     if (linear) p->linear = *linear;
     return derive(object->shape, p);
+}
+
+double rgi_object_scale(const rgi_object *object, const rgi_linear *linear) {
+    if (linear) return linear->scale;
+    return object->shape->kind == RG_SHAPE_SPHERE ? object->reach / object->shape->of.radius : 1;
 }
 
 /* ----------------------------------------------------------------------------------------- one object */
@@ -120,12 +139,12 @@ rg_shape *rgi_remove_one(rg_scene *scene, uint32_t slot) {
 }
 
 rg_result rg_scene_insert(rg_scene *scene, rg_shape *shape, const rg_pose *pose, rg_object *out) {
-    static const double origin[3] = {0, 0, 0};
+    const rg_pose at = pose ? *pose : rg_pose_at(0, 0, 0);
     rgi_placing p;
     rgi_frame frame;
     rg_object id;
     if (!shape) return rgi_fail(RG_INVALID_ARGUMENT, "shape is NULL");
-    rg_result result = rgi_place(shape, pose ? pose->position : origin, pose ? pose->linear : rgi_identity, &p);
+    rg_result result = rgi_place(shape, at.position, at.linear, at.scale, &p);
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_insert_one(scene, shape, &p, UINT32_MAX, 0, &id);
@@ -134,13 +153,14 @@ rg_result rg_scene_insert(rg_scene *scene, rg_shape *shape, const rg_pose *pose,
     return rgi_scene_end_change(scene, &frame, result);
 }
 
-static rg_result move_by_id(rg_scene *scene, rg_object id, const double position[3], const float *matrix) {
+static rg_result move_by_id(rg_scene *scene, rg_object id, const double position[3], const rg_pose *pose) {
     rgi_placing p;
     uint32_t slot;
     rg_result result = rgi_find_object(scene, id, &slot);
     if (result) return result;
     rgi_object *object = rgi_scene_object(scene, slot);
-    result = matrix ? rgi_place(object->shape, position, matrix, &p) : rgi_place_at(scene, object, position, &p);
+    result = pose ? rgi_place(object->shape, position, pose->linear, pose->scale, &p)
+                  : rgi_place_at(scene, object, position, &p);
     if (!result) result = rgi_move_one(scene, object, &p);
     if (!result) rgi_grid_settle(scene->grids[object->grid].grid);
     return result;
@@ -151,7 +171,7 @@ rg_result rg_scene_move(rg_scene *scene, rg_object id, const rg_pose *pose) {
     if (!pose) return rgi_fail(RG_INVALID_ARGUMENT, "pose is NULL");
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
-    return rgi_scene_end_change(scene, &frame, move_by_id(scene, id, pose->position, pose->linear));
+    return rgi_scene_end_change(scene, &frame, move_by_id(scene, id, pose->position, pose));
 }
 
 rg_result rg_scene_move_to(rg_scene *scene, rg_object id, const double position[3]) {
@@ -195,6 +215,7 @@ static void report_object(const rg_scene *scene, const rgi_object *object, rg_ob
     memset(r, 0, sizeof *r);
     rgi_copy(object->position, r->pose.position);
     memcpy(r->pose.linear, linear ? linear->matrix : rgi_identity, sizeof r->pose.linear);
+    r->pose.scale = rgi_object_scale(object, linear);
     r->shape = object->shape;
     r->mask = object->mask;
     r->grid = rgi_scene_grid_id(scene, object->grid);

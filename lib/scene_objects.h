@@ -8,18 +8,23 @@
 /** Where an object is to be: checked, with all that is derived from it. */
 typedef struct rgi_placing {
     double position[3];
-    bool is_linear; /* has a linear part other than the identity */
+    double radius;  /* of a sphere that is not linear */
+    bool is_linear; /* has a record of its linear part and scale */
     rgi_linear linear;
     double lo[3], hi[3];
     double reach;
 } rgi_placing;
 
 /** Checks a pose for a shape and derives the rest. RG_INVALID_VALUE. */
-rg_result rgi_place(const rg_shape *shape, const double position[3], const float matrix[9], rgi_placing *placing);
+rg_result rgi_place(const rg_shape *shape, const double position[3], const float matrix[9], double scale,
+                    rgi_placing *placing);
 
-/** The same for a new position of an object that keeps its linear part. */
+/** The same for a new position of an object that keeps its linear part and scale. */
 rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3],
                        rgi_placing *placing);
+
+/** The scale of its pose. */
+double rgi_object_scale(const rgi_object *object, const rgi_linear *linear);
 
 /** RG_INVALID_ID if the id is stale or was never given out; else *slot is its slot. */
 rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot);

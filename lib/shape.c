@@ -80,15 +80,19 @@ bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidat
 
 /* ------------------------------------------------------------------------------------------------- bounds */
 
+static rg_result check_radius(double radius) {
+    if (radius >= RG_RADIUS_MIN && radius <= RG_COORDINATE_MAX) return RG_OK;
+    return rgi_fail(RG_INVALID_VALUE, "radius is %g, not in [%g, %g]", radius, RG_RADIUS_MIN, RG_COORDINATE_MAX);
+}
+
 /* Half the extent of a posed sphere along a world axis: the row's length times the radius. */
-static double row_length(const float *matrix, int row) {
-    double r[3] = {matrix[3 * row], matrix[3 * row + 1], matrix[3 * row + 2]};
-    return sqrt(rgi_dot(r, r));
+static double row_length(const double *matrix, int row) {
+    return sqrt(rgi_dot(matrix + 3 * row, matrix + 3 * row));
 }
 
 /* The box around `linear * shape`, before the position is added; *scale bounds what was added up on the way. */
-static void posed_box(const rg_shape *shape, const float *matrix, int i, double *lo, double *hi, double *scale) {
-    const float *row = matrix + 3 * i;
+static void posed_box(const rg_shape *shape, const double *matrix, int i, double *lo, double *hi, double *scale) {
+    const double *row = matrix + 3 * i;
     double radius = shape->kind == RG_SHAPE_SPHERE ? shape->of.radius : shape->of.capsule.radius;
     if (shape->kind == RG_SHAPE_SPHERE) {
         *hi = radius * row_length(matrix, i);
@@ -116,7 +120,27 @@ static void posed_box(const rg_shape *shape, const float *matrix, int i, double 
     }
 }
 
-rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const float *matrix, double lo[3],
+/* Adds the position. At most a dozen roundings came before, each of half an ulp of `scale`. */
+static rg_result world_bounds(int i, double position, double scale, bool infinite, double *lo, double *hi) {
+    double pad = 0x1p-49 * (scale + fabs(position));
+    *lo += position - pad;
+    *hi += position + pad;
+    if (infinite || (*lo >= -4 * RG_COORDINATE_MAX && *hi <= 4 * RG_COORDINATE_MAX)) return RG_OK;
+    return rgi_fail(RG_INVALID_VALUE, "the posed shape reaches from %c = %g to %g, which is too far", "xyz"[i], *lo,
+                    *hi);
+}
+
+rg_result rgi_ball_bounds(double radius, const double position[3], double lo[3], double hi[3]) {
+    rg_result result = check_radius(radius);
+    for (int i = 0; i < 3 && !result; i++) {
+        lo[i] = -radius;
+        hi[i] = radius;
+        result = world_bounds(i, position[i], radius, false, &lo[i], &hi[i]);
+    }
+    return result;
+}
+
+rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const double *matrix, double lo[3],
                            double hi[3]) {
     for (int i = 0; i < 3; i++) {
         double scale;
@@ -131,13 +155,8 @@ rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], cons
         } else {
             posed_box(shape, matrix, i, &lo[i], &hi[i], &scale);
         }
-        /* At most a dozen roundings, each of half an ulp of what was added up. */
-        double pad = 0x1p-49 * (scale + fabs(position[i]));
-        lo[i] += position[i] - pad;
-        hi[i] += position[i] + pad;
-        if (!infinite && !(lo[i] >= -4 * RG_COORDINATE_MAX && hi[i] <= 4 * RG_COORDINATE_MAX))
-            return rgi_fail(RG_INVALID_VALUE, "the posed shape reaches from %c = %g to %g, which is too far",
-                            "xyz"[i], lo[i], hi[i]);
+        rg_result result = world_bounds(i, position[i], scale, infinite, &lo[i], &hi[i]);
+        if (result) return result;
     }
     return RG_OK;
 }
@@ -171,11 +190,6 @@ static rg_result shape_new(const rg_shape_config *given, rg_shape_kind kind, rg_
     shape->kind = kind;
     *out = shape;
     return RG_OK;
-}
-
-static rg_result check_radius(double radius) {
-    if (radius >= RG_RADIUS_MIN && radius <= RG_COORDINATE_MAX) return RG_OK;
-    return rgi_fail(RG_INVALID_VALUE, "radius is %g, not in [%g, %g]", radius, RG_RADIUS_MIN, RG_COORDINATE_MAX);
 }
 
 static rg_result check_point(const double point[3], const char *name) {

@@ -94,11 +94,7 @@ static double offset(const rgi_object *object, const rgi_linear *linear, const r
     double from_centre[3], condition = 3;
     rgi_sub(position, object->position, from_centre);
     double size = object->reach < INFINITY ? object->reach : rgi_max_magnitude(from_centre);
-    if (linear) {
-        double matrix[9];
-        for (int i = 0; i < 9; i++) matrix[i] = linear->matrix[i];
-        condition = frobenius(matrix) * frobenius(linear->inverse);
-    }
+    if (linear) condition = frobenius(linear->product) * frobenius(linear->inverse);
     double travelled = fabs(t) * sqrt(ray->dd);
     return 0x1p-42 * condition * size + 0x1p-47 * (rgi_max_magnitude(position) + travelled);
 }

@@ -12,6 +12,7 @@ namespace {
 
 /* Row vectors to column vectors: the transpose. */
 void set_pose(rg_pose &pose, const Imath::M44d &matrix) {
+    pose.scale = 1;
     for (int row = 0; row < 3; ++row) {
         pose.position[row] = matrix[3][row];
         for (int column = 0; column < 3; ++column) pose.linear[3 * row + column] = float(matrix[column][row]);

@@ -15,6 +15,7 @@ constexpr double share_replaced = 0.02; /* of the swarm, each frame */
 } // namespace
 
 void set_linear(rg_pose &pose, const Imath::Quatd &turn, const Imath::V3d &stretch) {
+    pose.scale = 1;
     const Imath::M33d rows = turn.toMatrix33(); /* for row vectors: its rows are our columns */
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)

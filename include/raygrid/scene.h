@@ -79,16 +79,19 @@ RG_API rg_result rg_scene_destroy(rg_scene **scene);
 /* ------------------------------------------------------------------------------------------------ objects */
 
 /**
- * Where an object is: world = position + linear * local. Any invertible linear part: rotation, scale, mirror, shear.
- * `linear` is stored by rows. The library computes with exactly the numbers given. The posed shape must not reach
- * beyond 4 * RG_COORDINATE_MAX, infinite boxes excepted.
+ * Where an object is: world = position + scale * linear * local. Any invertible linear part: rotation, scale, mirror,
+ * shear. `linear` is stored by rows. The library computes with exactly the numbers given, the product of scale and
+ * linear rounded to double. The posed shape must not reach beyond 4 * RG_COORDINATE_MAX, infinite boxes excepted.
+ * Spheres of any radius need one shape only: a scale each. A sphere without a linear part of its own takes least
+ * memory and time; its radius times the scale must be in [RG_RADIUS_MIN, RG_COORDINATE_MAX].
  */
 typedef struct rg_pose {
     double position[3]; /* finite, at most RG_COORDINATE_MAX in magnitude */
     float linear[9];    /* finite; |determinant| > 2^-40 times the product of the lengths of the rows */
+    double scale;       /* in [RG_RADIUS_MIN, RG_COORDINATE_MAX]; 0: 1 */
 } rg_pose;
 
-/** The pose that only moves: identity as linear part. */
+/** The pose that only moves: identity as linear part, scale 1. */
 RG_API rg_pose rg_pose_at(double x, double y, double z);
 
 /** Poses of many objects, for calls on many. Zero it, set the size, then what is given. */
@@ -100,6 +103,8 @@ typedef struct rg_pose_views {
      * float) or RG_F32. Give all three or none; none: insert takes the identity, move keeps what each object has.
      */
     rg_input3 column[3];
+    /** RG_F64 or RG_F32. Not given: insert takes 1, move keeps what each object has. */
+    rg_input scale;
 } rg_pose_views;
 
 /**
@@ -140,7 +145,7 @@ RG_API rg_result rg_scene_insert_many(rg_scene *scene, const rg_insert_views *vi
  */
 RG_API rg_result rg_scene_move(rg_scene *scene, rg_object object, const rg_pose *pose);
 
-/** Gives an object a new position and keeps its linear part. Otherwise as rg_scene_move. */
+/** Gives an object a new position and keeps its linear part and scale. Otherwise as rg_scene_move. */
 RG_API rg_result rg_scene_move_to(rg_scene *scene, rg_object object, const double position[3]);
 
 /**

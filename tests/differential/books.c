@@ -23,7 +23,7 @@ static void check_bounds(const world *w, rg_object id, const rg_object_report *r
 
 static bool same_pose(const rg_pose *a, const rg_pose *b) {
     return memcmp(a->position, b->position, sizeof a->position) == 0 &&
-           memcmp(a->linear, b->linear, sizeof a->linear) == 0;
+           memcmp(a->linear, b->linear, sizeof a->linear) == 0 && a->scale == b->scale;
 }
 
 /* Looks every object up; `boxes` counts those of each grid and gathers their finite bounds. */

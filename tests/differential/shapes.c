@@ -173,7 +173,8 @@ rg_pose world_pose(world *w, const world_shape *shape) {
         if (random_once_in(&w->random, 4)) pose.position[i] = floor(pose.position[i]);
     }
     if (!shape->finite) return pose;
-    switch (random_below(&w->random, 4)) {
+    if (random_once_in(&w->random, 4)) pose.scale = random_decade(&w->random, w->least_decade, w->most_decade);
+    switch (random_below(&w->random, 6)) {
     case 0:
         scaled_rotation(w, &pose);
         break;

@@ -62,7 +62,8 @@ void world_insert_one(world *w) {
 }
 
 /* A view of the poses of an array: as they lie, or from the last to the first. */
-static rg_pose_views views_of(const rg_pose *poses, uint32_t count, bool backward, bool with_linear) {
+static rg_pose_views views_of(const rg_pose *poses, uint32_t count, bool backward, bool with_linear,
+                              bool with_scale) {
     ptrdiff_t stride = backward ? -(ptrdiff_t)sizeof *poses : (ptrdiff_t)sizeof *poses;
     const rg_pose *first = backward ? poses + count - 1 : poses;
     rg_pose_views views = {.size = sizeof views};
@@ -71,6 +72,7 @@ static rg_pose_views views_of(const rg_pose *poses, uint32_t count, bool backwar
         const float *top = first->linear + k;
         views.column[k] = (rg_input3){top, top + 3, top + 6, stride, RG_F32};
     }
+    if (with_scale) views.scale = (rg_input){&first->scale, stride, RG_F64};
     return views;
 }
 
@@ -87,7 +89,7 @@ void world_insert_many(world *w, uint32_t count) {
         masks[i] = pick_mask(w);
     }
     rg_insert_views views = {.size = sizeof views, .shapes = handles, .shapes_stride = sizeof *handles};
-    rg_pose_views pose_views = views_of(poses, count, false, true);
+    rg_pose_views pose_views = views_of(poses, count, false, true, true);
     views.poses = &pose_views;
     views.mask = (rg_input){masks, sizeof *masks, RG_U32};
     views.grid = w->grids[random_below(&w->random, (uint32_t)w->grid_count)];
@@ -125,14 +127,15 @@ void world_move_one(world *w) {
 
 /* Draws ids with repetition, so now and then one is named twice and must end at its last pose. */
 void world_move_many(world *w, uint32_t count) {
-    rg_pose poses[MOST_AT_ONCE] = {{{0}, {0}}};
+    rg_pose poses[MOST_AT_ONCE] = {{{0}, {0}, 1}};
     rg_object ids[MOST_AT_ONCE];
     bool backward = random_once_in(&w->random, 2), with_linear = random_once_in(&w->random, 2);
+    bool with_scale = random_once_in(&w->random, 2);
     for (uint32_t i = 0; i < count; i++) {
         ids[i] = world_pick(w);
         poses[backward ? count - 1 - i : i] = world_pose(w, shape_of(w, ids[i]));
     }
-    rg_pose_views views = views_of(poses, count, backward, with_linear);
+    rg_pose_views views = views_of(poses, count, backward, with_linear, with_scale);
     rg_input in = {ids, sizeof *ids, RG_U64};
     world_expect(w, "rg_scene_move_many", rg_scene_move_many(w->scene, &in, &views, count), RG_OK);
     for (uint32_t i = 0; i < count; i++) {
@@ -140,6 +143,7 @@ void world_move_many(world *w, uint32_t count) {
         if (!with_linear) {
             memcpy(pose.linear, reference_pose(w->reference, ids[i])->linear, sizeof pose.linear);
         }
+        if (!with_scale) pose.scale = reference_pose(w->reference, ids[i])->scale;
         reference_move(w->reference, ids[i], &pose);
     }
 }
@@ -183,7 +187,7 @@ static void misuse(world *w) {
     rg_input in = {ids, sizeof *ids, RG_U64};
     pose.position[random_below(&w->random, 3)] += 1;
     poses[0] = poses[1] = pose;
-    rg_pose_views views = views_of(poses, 2, false, true);
+    rg_pose_views views = views_of(poses, 2, false, true, true);
     world_expect(w, "rg_scene_move_many", rg_scene_move_many(w->scene, &in, &views, 2), RG_INVALID_ID);
     world_expect(w, "rg_scene_remove_many", rg_scene_remove_many(w->scene, &in, 2), RG_INVALID_ID);
     pose.linear[random_below(&w->random, 9)] = random_once_in(&w->random, 2) ? NAN : INFINITY;

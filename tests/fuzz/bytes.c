@@ -39,9 +39,10 @@ size_t read_size(script *s, size_t right) {
 }
 
 rg_pose read_pose(script *s) {
-    rg_pose pose = {{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    rg_pose pose = {{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1};
     uint8_t kind = read_byte(s);
     for (int i = 0; i < 3; i++) pose.position[i] = read_number(s);
+    if (kind & 64) pose.scale = read_number(s);
     if (kind % 2) return pose;
     if (kind % 4) {
         for (int i = 0; i < 3; i++) pose.linear[4 * i] = read_float(s);

@@ -12,7 +12,7 @@ static bool is_plain(const rg_pose *pose) {
     for (int i = 0; i < 9; i++) {
         if (pose->linear[i] != IDENTITY[i]) return false;
     }
-    return true;
+    return pose->scale == 0 || pose->scale == 1;
 }
 
 /* What the header demands of the position and of each number; the determinant is left to the library. */
@@ -23,7 +23,7 @@ static bool plausible(const rg_pose *pose) {
     for (int i = 0; i < 9; i++) {
         if (!(fabsf(pose->linear[i]) <= FLT_MAX)) return false;
     }
-    return true;
+    return pose->scale == 0 || (pose->scale >= RG_RADIUS_MIN && pose->scale <= RG_COORDINATE_MAX);
 }
 
 static int index_of(const script *s, rg_object id) {
@@ -63,6 +63,7 @@ static rg_pose_views views_of(script *s, const rg_pose *poses, uint8_t flags) {
         const float *top = poses[0].linear + k;
         views.column[k] = (rg_input3){top, top + 3, top + 6, sizeof *poses, RG_F32};
     }
+    views.scale = (rg_input){&poses[0].scale, sizeof *poses, RG_F64};
     if (flags & 1) views.column[flags % 3].x = NULL; /* two of three */
     if (flags & 2) views.column[0].x = views.column[1].x = views.column[2].x = NULL;
     if (flags & 4) views.position.x = NULL;
@@ -92,7 +93,8 @@ void insert_some(script *s) {
         poses[i] = read_pose(s);
         if (flags & 2)
             poses[i] = (rg_pose){{poses[i].position[0], poses[i].position[1], poses[i].position[2]},
-                                 {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+                                 {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                                 poses[i].scale};
     }
     rg_pose_views pose_views = views_of(s, poses, flags);
     rg_insert_views views = {.size = read_size(s, sizeof views), .shapes = shapes, .shapes_stride = sizeof *shapes};

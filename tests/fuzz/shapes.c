@@ -93,7 +93,7 @@ static void make_mesh(script *s) {
 /* What a host must not do from a callback, and what it is told. */
 static void try_to_change(script *s) {
     rg_scene *scene = s->scene;
-    const rg_pose pose = {{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    const rg_pose pose = {{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1};
     const rg_grid_config config = {.size = sizeof config};
     rg_object id = s->object_count ? s->objects[0] : RG_NO_OBJECT;
     rg_grid grid;

@@ -124,14 +124,16 @@ FIELD(rg_scene_config, log, 56);
 FIELD(rg_scene_config, log_user, 64);
 FIELD(rg_scene_config, grid, 72);
 
-SIZE(rg_pose, 64);
+SIZE(rg_pose, 72);
 FIELD(rg_pose, position, 0);
 FIELD(rg_pose, linear, 24);
+FIELD(rg_pose, scale, 64);
 
-SIZE(rg_pose_views, 168);
+SIZE(rg_pose_views, 192);
 FIELD(rg_pose_views, size, 0);
 FIELD(rg_pose_views, position, 8);
 FIELD(rg_pose_views, column, 48);
+FIELD(rg_pose_views, scale, 168);
 
 SIZE(rg_insert_views, 64);
 FIELD(rg_insert_views, size, 0);
@@ -142,14 +144,14 @@ FIELD(rg_insert_views, mask, 32);
 FIELD(rg_insert_views, grid, 56);
 FIELD(rg_insert_views, reserved, 60);
 
-SIZE(rg_object_report, 136);
+SIZE(rg_object_report, 144);
 FIELD(rg_object_report, size, 0);
 FIELD(rg_object_report, pose, 8);
-FIELD(rg_object_report, shape, 72);
-FIELD(rg_object_report, mask, 80);
-FIELD(rg_object_report, grid, 84);
-FIELD(rg_object_report, lo, 88);
-FIELD(rg_object_report, hi, 112);
+FIELD(rg_object_report, shape, 80);
+FIELD(rg_object_report, mask, 88);
+FIELD(rg_object_report, grid, 92);
+FIELD(rg_object_report, lo, 96);
+FIELD(rg_object_report, hi, 120);
 
 SIZE(rg_scene_report, 48);
 FIELD(rg_scene_report, size, 0);

@@ -116,7 +116,7 @@ static bool right_weights(const object *o, const crossing *c, const rg_hit *got,
     const double *v1 = s->vertices + 3 * (size_t)index[1], *v2 = s->vertices + 3 * (size_t)index[2];
     real apart[3], ab[3], ac[3];
     for (int i = 0; i < 3; i++) {
-        const float *row = o->pose.linear + 3 * i;
+        const real *row = o->matrix + 3 * i;
         ab[i] = ac[i] = 0;
         for (int k = 0; k < 3; k++) {
             ab[i] += row[k] * ((real)v1[k] - v0[k]);
@@ -252,7 +252,7 @@ static const char *impossible(const object *o, const rg_ray *ray, rg_cull cull, 
 
 static bool same_place(const object *a, const object *b) {
     return a->shape == b->shape && memcmp(a->pose.position, b->pose.position, sizeof a->pose.position) == 0 &&
-           memcmp(a->pose.linear, b->pose.linear, sizeof a->pose.linear) == 0;
+           memcmp(a->pose.linear, b->pose.linear, sizeof a->pose.linear) == 0 && a->pose.scale == b->pose.scale;
 }
 
 /* What speaks against `got` among the objects that the ray sees; NULL if nothing does. */

@@ -43,8 +43,9 @@ typedef struct object {
     rg_pose pose;
     uint32_t mask;
     bool plain;              /* the linear part is the identity */
-    real inverse[9];         /* of the linear part */
-    real stretch, condition; /* of the linear part: its 2-norm, and that times the 2-norm of the inverse */
+    real matrix[9];          /* scale times linear part */
+    real inverse[9];         /* of it */
+    real stretch, condition; /* of it: its 2-norm, and that times the 2-norm of the inverse */
     real centre[3], radius;  /* a sphere around position + centre that holds the object */
     real world_radius;       /* of the object around its position: the R of trace.h */
 } object;

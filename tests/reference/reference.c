@@ -127,7 +127,7 @@ uint32_t reference_mask(const reference_scene *scene, rg_object id) {
 /* ------------------------------------------------------------------------------------------------- bounds */
 
 /* The extent along one axis of the box, relative to the position. */
-static void box_extent(const reference_shape *s, const float row[3], real *lo, real *hi) {
+static void box_extent(const reference_shape *s, const real row[3], real *lo, real *hi) {
     for (int i = 0; i < 3; i++) {
         if (row[i] == 0) continue; /* an infinite axis must not make 0 * inf */
         *lo += row[i] * (row[i] > 0 ? s->lo[i] : s->hi[i]);
@@ -135,18 +135,18 @@ static void box_extent(const reference_shape *s, const float row[3], real *lo, r
     }
 }
 
-static void mesh_extent(const reference_shape *s, const float row[3], real *lo, real *hi) {
+static void mesh_extent(const reference_shape *s, const real row[3], real *lo, real *hi) {
     *lo = HUGE_VALL;
     *hi = -HUGE_VALL;
     for (size_t k = 0; k < 3 * s->triangle_count; k++) {
         const double *v = s->vertices + 3 * (size_t)s->indices[k];
-        real at = (real)row[0] * v[0] + (real)row[1] * v[1] + (real)row[2] * v[2];
+        real at = row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
         *lo = fminl(*lo, at);
         *hi = fmaxl(*hi, at);
     }
 }
 
-static void round_extent(const reference_shape *s, const float row[3], real *lo, real *hi) {
+static void round_extent(const reference_shape *s, const real row[3], real *lo, real *hi) {
     const real r[3] = {row[0], row[1], row[2]};
     real reach = s->r * length(r), a = dot(r, s->a), b = dot(r, s->b);
     *lo = fminl(a, b) - reach;
@@ -156,7 +156,7 @@ static void round_extent(const reference_shape *s, const float row[3], real *lo,
 void reference_bounds(const reference_scene *scene, rg_object id, double lo[3], double hi[3]) {
     const object *o = known_object_const(scene, id);
     for (int i = 0; i < 3; i++) {
-        const float *row = o->pose.linear + 3 * i;
+        const real *row = o->matrix + 3 * i;
         real least = 0, most = 0;
         switch (o->shape->kind) {
         case RG_SHAPE_BOX:

@@ -18,7 +18,7 @@ static void teardown(void) {
 }
 
 static rg_pose pose_at(double x, double y, double z) {
-    return (rg_pose){{x, y, z}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    return (rg_pose){{x, y, z}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 1};
 }
 
 static rg_ray ray_of(double ox, double oy, double oz, double dx, double dy, double dz) {
@@ -179,7 +179,7 @@ START_TEST(mesh_square) {
 END_TEST
 
 START_TEST(posed_sphere_is_an_ellipsoid) {
-    rg_pose pose = {{10, 0, 0}, {-2, 0, 0, 0, 4, 0, 0, 0, 0.5f}};
+    rg_pose pose = {{10, 0, 0}, {-2, 0, 0, 0, 4, 0, 0, 0, 0.5f}, 1};
     insert(FIRST, reference_sphere(scene, 1), pose);
     reference_hit hit = trace(ray_of(0, 0, 0, 1, 0, 0), RG_CULL_NONE);
     ck_assert(hit.t == 8 && hit.cosine == -1);
@@ -194,7 +194,7 @@ END_TEST
 START_TEST(mirrored_mesh_keeps_its_outside) {
     const double v[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const uint32_t index[] = {0, 1, 2};
-    rg_pose pose = {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, -1}};
+    rg_pose pose = {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, -1}, 1};
     insert(FIRST, reference_mesh(scene, v, 3, index, 1), pose);
     reference_hit hit = trace(ray_of(0.25, 0.25, 1, 0, 0, -1), RG_CULL_NONE);
     ck_assert(hit.cosine == 1);

@@ -109,9 +109,8 @@ line line_to_object(const object *o, const rg_ray *ray, const real aside[3]) {
 }
 
 real length_in_world(const object *o, const real local[3]) {
-    real m[9], world[3];
-    for (int i = 0; i < 9; i++) m[i] = o->pose.linear[i];
-    multiply(m, local, world);
+    real world[3];
+    multiply(o->matrix, local, world);
     return length(world);
 }
 
@@ -200,10 +199,11 @@ static real radius_around_position(const object *o, const real m[9]) {
 
 void prepare_object(object *o) {
     static const real identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    real m[9];
+    real *m = o->matrix;
     o->plain = true;
+    if (o->pose.scale == 0) o->pose.scale = 1;
     for (int i = 0; i < 9; i++) {
-        m[i] = o->pose.linear[i];
+        m[i] = (real)o->pose.scale * o->pose.linear[i];
         o->plain = o->plain && m[i] == identity[i];
     }
     invert(m, o->inverse);

@@ -10,7 +10,7 @@ START_TEST(inverse_times_matrix) {
         float m[9];
         rgi_linear linear;
         for (int k = 0; k < 9; k++) m[k] = (float)unit_random_scale(-3, 3);
-        if (rgi_linear_init(&linear, m) != RG_OK) continue;
+        if (rgi_linear_init(&linear, m, 1) != RG_OK) continue;
         checked++;
         double lengths = 1, determinant = 0;
         for (int k = 0; k < 3; k++) {
@@ -41,19 +41,19 @@ START_TEST(what_is_singular) {
     const float rank2[9] = {1, 2, 3, 4, 5, 6, 7, 8, 9}, zero_row[9] = {1, 0, 0, 0, 0, 0, 0, 0, 1};
     const float uneven[9] = {1, 0, 0, 0, 1e-3f, 0, 0, 0, 1e3f}, extreme[9] = {1e-18f, 0, 0, 0, 1e18f, 0, 0, 0, -1};
     const float sheared[9] = {1, 1e5f, 0, 0, 1, 0, 0, 0, 1}, mirror[9] = {-1, 0, 0, 0, 1, 0, 0, 0, 1};
-    ck_assert_int_eq(rgi_linear_init(&linear, rank2), RG_INVALID_VALUE);
-    ck_assert_int_eq(rgi_linear_init(&linear, zero_row), RG_INVALID_VALUE);
-    ck_assert_int_eq(rgi_linear_init(&linear, uneven), RG_OK);
-    ck_assert_int_eq(rgi_linear_init(&linear, extreme), RG_OK);
-    ck_assert_int_eq(rgi_linear_init(&linear, sheared), RG_OK);
-    ck_assert_int_eq(rgi_linear_init(&linear, mirror), RG_OK);
+    ck_assert_int_eq(rgi_linear_init(&linear, rank2, 1), RG_INVALID_VALUE);
+    ck_assert_int_eq(rgi_linear_init(&linear, zero_row, 1), RG_INVALID_VALUE);
+    ck_assert_int_eq(rgi_linear_init(&linear, uneven, 1), RG_OK);
+    ck_assert_int_eq(rgi_linear_init(&linear, extreme, 1), RG_OK);
+    ck_assert_int_eq(rgi_linear_init(&linear, sheared, 1), RG_OK);
+    ck_assert_int_eq(rgi_linear_init(&linear, mirror, 1), RG_OK);
     for (int i = 0; i < 9; i++) {
         const float bad[] = {NAN, INFINITY, -INFINITY};
         for (int k = 0; k < 3; k++) {
             float m[9];
             memcpy(m, rgi_identity, sizeof m);
             m[i] = bad[k];
-            ck_assert_int_eq(rgi_linear_init(&linear, m), RG_INVALID_VALUE);
+            ck_assert_int_eq(rgi_linear_init(&linear, m, 1), RG_INVALID_VALUE);
         }
     }
 }

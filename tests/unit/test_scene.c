@@ -286,6 +286,66 @@ START_TEST(endless_planes) {
 }
 END_TEST
 
+/* A scale beside the pose is what its product with the shape, or with the linear part, would be; and is given back.
+ */
+START_TEST(scales) {
+    static const double wanted[] = {0.1, 1e-90, 3, 1e90, 0};
+    for (int i = 0; i < 5; i++) {
+        rg_object_report report = {.size = sizeof report};
+        rg_object object;
+        rg_hit hit;
+        double scale = wanted[i] == 0 ? 1 : wanted[i];
+        rg_pose pose = rg_pose_at(0, 0, 0);
+        pose.scale = wanted[i];
+        ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, &object), RG_OK);
+        for (int turned = 0; turned < 2; turned++) {
+            const double from[3] = {0, 0, -100 * scale}, along[3] = {0, 0, scale};
+            const rg_ray ray = rg_ray_from(from, along);
+            ck_assert_int_eq(rg_scene_trace(scene, &ray, &hit, 1), RG_OK);
+            ck_assert_double_eq_tol(hit.t, turned ? 98 : 99, 1e-12);
+            ck_assert_int_eq(rg_scene_lookup(scene, object, &report), RG_OK);
+            ck_assert_double_eq(report.pose.scale, scale);
+            ck_assert_double_le(report.hi[2], (turned ? 2.0001 : 1.0001) * scale);
+            pose.linear[8] = 2;
+            if (!turned) ck_assert_int_eq(rg_scene_move(scene, object, &pose), RG_OK);
+        }
+        ck_assert_int_eq(rg_scene_remove(scene, object), RG_OK);
+    }
+    static const double refused[] = {-1, 1e-101, 1e101, NAN, INFINITY};
+    for (int i = 0; i < 5; i++) {
+        rg_pose pose = rg_pose_at(0, 0, 0);
+        pose.scale = refused[i];
+        ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, NULL), RG_INVALID_VALUE);
+    }
+}
+END_TEST
+
+/* Moves of many keep what their views do not give. */
+START_TEST(moves_keep_what_is_not_given) {
+    rg_pose pose = rg_pose_at(1, 2, 3);
+    rg_object ids[2];
+    const double positions[2][3] = {{4, 5, 6}, {7, 8, 9}}, scales[2] = {0.3, 7};
+    rg_object_report report = {.size = sizeof report};
+    rg_pose_views views = {.size = sizeof views};
+    const rg_input objects = {ids, sizeof *ids, RG_U64};
+    pose.scale = 0.7;
+    ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, &ids[0]), RG_OK);
+    pose.linear[1] = 0.5f;
+    ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, &ids[1]), RG_OK);
+    views.position = rg_input3_packed(positions, sizeof positions[0], RG_F64);
+    for (int given = 0; given < 2; given++) {
+        if (given) views.scale = (rg_input){scales, sizeof scales[0], RG_F64};
+        ck_assert_int_eq(rg_scene_move_many(scene, &objects, &views, 2), RG_OK);
+        for (int i = 0; i < 2; i++) {
+            ck_assert_int_eq(rg_scene_lookup(scene, ids[i], &report), RG_OK);
+            ck_assert_mem_eq(report.pose.position, positions[i], sizeof positions[i]);
+            ck_assert_double_eq(report.pose.scale, given ? scales[i] : 0.7);
+            ck_assert_float_eq(report.pose.linear[1], i ? 0.5f : 0);
+        }
+    }
+}
+END_TEST
+
 START_TEST(views_of_poses) {
     struct {
         int32_t before;
@@ -464,6 +524,8 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, views_of_poses);
     tcase_add_test(tests, columns_in_double_are_rounded);
     tcase_add_test(tests, several_grids);
+    tcase_add_test(tests, scales);
+    tcase_add_test(tests, moves_keep_what_is_not_given);
     tcase_add_test(tests, no_ray_hits_where_it_starts);
     suite_add_tcase(suite, tests);
     return suite;

@@ -23,24 +23,27 @@ static void surface_point(const rg_shape *shape, double out[3]) {
         out[i] = n[i] / length * radius + (shape->kind == RG_SHAPE_SPHERE ? 0 : c->a[i] + along * c->axis[i]);
 }
 
-static void transform(const float m[9], const double v[3], double out[3]) {
+static void transform(const double m[9], const double v[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
 }
 
 /* Under any pose, world boxes hold the surface, and those of spheres and capsules hold little else. */
 static void check_bounds(const rg_shape *shape) {
     for (int i = 0; i < 200; i++) {
-        float m[9];
+        double m[9];
         double position[3], lo[3], hi[3], seen_lo[3], seen_hi[3];
-        for (int k = 0; k < 9; k++) m[k] = (float)unit_random_scale(-1, 1);
+        for (int k = 0; k < 9; k++) m[k] = unit_random_scale(-1, 1);
         for (int k = 0; k < 3; k++) position[k] = unit_random_scale(-2, 6);
-        const float *matrix = i % 2 ? m : NULL;
+        const double *matrix = i % 2 ? m : NULL;
         ck_assert_int_eq(rgi_shape_bounds(shape, position, matrix, lo, hi), RG_OK);
         rgi_empty_box(seen_lo, seen_hi);
         for (int k = 0; k < 500; k++) {
             double local[3], world[3];
             surface_point(shape, local);
-            transform(matrix ? matrix : rgi_identity, local, world);
+            if (matrix)
+                transform(matrix, local, world);
+            else
+                memcpy(world, local, sizeof world);
             for (int a = 0; a < 3; a++) {
                 world[a] += position[a];
                 ck_assert(world[a] >= lo[a] && world[a] <= hi[a]);
@@ -68,7 +71,7 @@ END_TEST
 START_TEST(infinite_and_far) {
     rg_shape *plane, *ball;
     double lo[3], hi[3], position[3] = {1, 2, 3};
-    const float turned[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+    const double turned[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
     ck_assert_int_eq(
         rg_shape_create_box(NULL, (double[]){-INFINITY, -1, -INFINITY}, (double[]){INFINITY, 0, INFINITY}, &plane),
         RG_OK);
@@ -78,7 +81,7 @@ START_TEST(infinite_and_far) {
     ck_assert_int_eq(rg_shape_create_sphere(NULL, 1e100, &ball), RG_OK);
     position[0] = 1e100;
     ck_assert_int_eq(rgi_shape_bounds(ball, position, NULL, lo, hi), RG_OK);
-    const float large[9] = {3, 0, 0, 0, 1, 0, 0, 0, 1};
+    const double large[9] = {3, 0, 0, 0, 1, 0, 0, 0, 1};
     ck_assert_int_eq(rgi_shape_bounds(ball, position, large, lo, hi), RG_INVALID_VALUE);
     rg_shape_release(&plane);
     rg_shape_release(&ball);
