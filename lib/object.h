@@ -4,24 +4,24 @@
 #define RAYGRID_LIB_OBJECT_H
 
 #include "intersect.h"
+#include "lattice.h"
 #include "pose.h"
 #include "shape.h"
 #include "slots.h"
 
 #include <raygrid/scene.h>
 
-/** A slot for an object. While it is free, shape is NULL and generation that of its next use. */
+/** A slot for an object: one cache line. While it is free, shape is NULL and generation that of its next use. */
 typedef struct rgi_object {
-    uint32_t link; /* of the list of free slots */
+    uint32_t linear; /* record of its linear part and scale, or RGI_NONE; while it is free, the list's */
     uint32_t generation;
     rg_shape *shape;
     double position[3];
-    double reach;    /* the object is within this distance of its position; may be infinite. Of a sphere without
-                        a linear part exactly its radius. */
-    uint32_t linear; /* record of its linear part and scale, or RGI_NONE: it has none */
+    double reach; /* the object is within this distance of its position; may be infinite. Of a sphere without
+                     a linear part exactly its radius. */
     uint32_t mask;
-    uint32_t grid;   /* index of its grid */
-    uint32_t member; /* its record there */
+    uint32_t grid;      /* index of its grid */
+    rgi_location place; /* there; in the paper's kinds `block` is the number of its member */
 } rgi_object;
 
 /**

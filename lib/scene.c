@@ -118,6 +118,7 @@ rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
     scene->memory = memory;
     scene->log = config.log;
     scene->log_user = config.log_user;
+    scene->kernels = rgi_kernels_best();
     lock_init(&scene->lock);
     rgi_slots_init(&scene->objects, &scene->memory, sizeof(rgi_object), "objects");
     rgi_slots_init(&scene->linears, &scene->memory, sizeof(rgi_linear), "poses");

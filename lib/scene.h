@@ -6,6 +6,7 @@
 #ifndef RAYGRID_LIB_SCENE_H
 #define RAYGRID_LIB_SCENE_H
 
+#include "beam.h"
 #include "grid.h"
 #include "memory.h"
 #include "object.h"
@@ -19,13 +20,14 @@ enum { RGI_GRIDS = 256 };
 
 /** A place for a grid. Ids are generation * 256 + index; the scene's own grid is 0 of generation 0. */
 typedef struct rgi_grid_place {
-    rgi_grid *grid; /* NULL: free */
+    struct rgi_any_grid *grid; /* NULL: free */
     uint32_t generation;
 } rgi_grid_place;
 
 struct rg_scene {
     rgi_memory memory;
     rgi_pool *pool;
+    const rgi_kernels *kernels;
     pthread_rwlock_t lock;
     rg_log log;
     void *log_user;

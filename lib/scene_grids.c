@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include "any_grid.h"
 #include "error.h"
-#include "scene.h"
 #include "struct_size.h"
 
 enum { REPORT_LEAST = sizeof(rg_grid_report), GENERATIONS = 1 << 24 };
@@ -24,12 +24,12 @@ static uint32_t free_place(const rg_scene *scene) {
 }
 
 rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint32_t *index) {
-    rgi_grid *grid;
+    rgi_any_grid *grid;
     *index = free_place(scene);
     if (*index == RGI_GRIDS) return rgi_fail(RG_LIMIT_EXCEEDED, "a scene has %d grids at the most", RGI_GRIDS);
     rg_result result = rgi_allocate(&scene->memory, 1, sizeof *grid, "a grid", &grid);
     if (result) return result;
-    result = rgi_grid_init(grid, &scene->memory, config, scene->log, scene->log_user);
+    result = rgi_any_grid_init(grid, scene, config);
     if (result) {
         rgi_release(&scene->memory, grid, 1, sizeof *grid);
         return result;
@@ -41,9 +41,9 @@ rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint
 }
 
 void rgi_scene_drop_grid(rg_scene *scene, uint32_t index) {
-    rgi_grid *grid = scene->grids[index].grid;
+    rgi_any_grid *grid = scene->grids[index].grid;
     if (!grid) return;
-    rgi_grid_free(grid);
+    rgi_any_grid_free(grid);
     rgi_release(&scene->memory, grid, 1, sizeof *grid);
     scene->grids[index].grid = NULL;
     scene->grids[index].generation++;
@@ -68,9 +68,9 @@ static rg_result destroy(rg_scene *scene, rg_grid id) {
     rg_result result = rgi_scene_find_grid(scene, id, &index);
     if (result) return result;
     if (index == 0) return rgi_fail(RG_BUSY, "the scene's own grid can't be destroyed");
-    if (scene->grids[index].grid->member_count)
+    if (scene->grids[index].grid->count)
         return rgi_fail(RG_BUSY, "grid 0x%x still holds %llu objects", id,
-                        (unsigned long long)scene->grids[index].grid->member_count);
+                        (unsigned long long)scene->grids[index].grid->count);
     rgi_scene_drop_grid(scene, index);
     return RG_OK;
 }
@@ -90,7 +90,7 @@ rg_result rg_grid_configure(rg_scene *scene, rg_grid id, const rg_grid_config *g
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_scene_find_grid(scene, id, &index);
-    if (!result) result = rgi_grid_configure(scene->grids[index].grid, &config);
+    if (!result) result = rgi_any_grid_configure(scene->grids[index].grid, scene, index, &config);
     return rgi_scene_end_change(scene, &frame, result);
 }
 
@@ -100,7 +100,7 @@ rg_result rg_grid_rebuild(rg_scene *scene, rg_grid id) {
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_scene_find_grid(scene, id, &index);
-    if (!result) result = rgi_grid_rebuild(scene->grids[index].grid);
+    if (!result) result = rgi_any_grid_rebuild(scene->grids[index].grid, scene, index);
     return rgi_scene_end_change(scene, &frame, result);
 }
 
@@ -111,7 +111,7 @@ rg_result rg_grid_stats(rg_scene *scene, rg_grid id, rg_grid_report *report) {
     if (!scene) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL");
     rgi_scene_begin_read(scene, &frame);
     rg_result result = rgi_scene_find_grid(scene, id, &index);
-    if (!result) rgi_grid_report(scene->grids[index].grid, &r);
+    if (!result) rgi_any_grid_report(scene->grids[index].grid, &r);
     rgi_scene_end_read(scene, &frame);
     return result ? result : rgi_struct_write(&r, sizeof r, REPORT_LEAST, report, "rg_grid_report");
 }

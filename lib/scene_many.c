@@ -3,6 +3,7 @@
  * Insert, move and remove many objects. Each call goes over its input twice: once to check all and to add up what
  * memory it takes, then, when all of it is there, to do it. So it is done whole or not at all.
  */
+#include "any_grid.h"
 #include "error.h"
 #include "scene_objects.h"
 #include "struct_size.h"
@@ -87,28 +88,46 @@ static rg_result prepare_insert(rg_scene *scene, const rg_insert_views *views, u
             return result;
         }
         linears += p.is_linear;
-        rgi_grid_need_insert(scene->grids[grid].grid, p.lo, p.hi, &need);
+        rgi_any_grid_need_insert(scene->grids[grid].grid, &p.bound, &need);
     }
     result = rgi_slots_reserve(&scene->objects, count);
     if (!result) result = rgi_slots_reserve(&scene->linears, linears);
-    if (!result) result = rgi_grid_reserve(scene->grids[grid].grid, &need);
+    if (!result) result = rgi_any_grid_reserve(scene->grids[grid].grid, &need);
     return result;
 }
 
+static rg_result insert_nth(rg_scene *scene, const rg_insert_views *views, uint64_t i, uint32_t grid, rg_object *id) {
+    rgi_placing p;
+    rg_shape *shape = shape_at(views, i);
+    rg_result result = place_view(scene, views->poses, i, shape, NULL, &p);
+    uint32_t mask = (uint32_t)rgi_load_integer(&views->mask, i, UINT32_MAX);
+    return result ? result : rgi_insert_one(scene, shape, &p, mask, grid, id);
+}
+
+/* What a lattice takes is not known before it is taken: where memory ends on the way, what was inserted goes again.
+ */
 static rg_result insert_all(rg_scene *scene, const rg_insert_views *views, uint64_t count, const rg_output *objects) {
     uint32_t grid;
+    uint64_t done = 0;
+    rg_object *ids = NULL;
     rg_result result = rgi_scene_find_grid(scene, views->grid, &grid);
     if (!result) result = prepare_insert(scene, views, count, grid);
-    for (uint64_t i = 0; i < count && !result; i++) {
-        rgi_placing p;
-        rg_object id;
-        rg_shape *shape = shape_at(views, i);
-        result = place_view(scene, views->poses, i, shape, NULL, &p);
-        uint32_t mask = (uint32_t)rgi_load_integer(&views->mask, i, UINT32_MAX);
-        if (!result) result = rgi_insert_one(scene, shape, &p, mask, grid, &id);
-        if (!result && objects) rgi_store_integer(objects, i, id);
+    if (!result && count) result = rgi_allocate(&scene->memory, count, sizeof *ids, "inserting many objects", &ids);
+    if (result) return result;
+    while (done < count && !result) {
+        result = insert_nth(scene, views, done, grid, &ids[done]);
+        done += !result;
     }
-    if (!result) rgi_grid_settle(scene->grids[grid].grid);
+    if (result) {
+        while (done > 0) {
+            rg_shape *shape = rgi_remove_one(scene, RG_OBJECT_SLOT(ids[--done]));
+            rg_shape_release(&shape);
+        }
+    } else {
+        for (uint64_t i = 0; i < count && objects; i++) rgi_store_integer(objects, i, ids[i]);
+        rgi_any_grid_settle(scene->grids[grid].grid, scene);
+    }
+    rgi_release(&scene->memory, ids, count, sizeof *ids);
     return result;
 }
 
@@ -147,7 +166,7 @@ static bool is_touched(const touched *t, uint32_t grid) {
 
 static void settle(rg_scene *scene, const touched *t) {
     for (uint32_t i = 0; i < scene->grid_places; i++) {
-        if (is_touched(t, i)) rgi_grid_settle(scene->grids[i].grid);
+        if (is_touched(t, i)) rgi_any_grid_settle(scene->grids[i].grid, scene);
     }
 }
 
@@ -170,7 +189,8 @@ static void unmark(rg_scene *scene, const rg_input *objects, uint64_t count) {
 
 /** A move that was checked, for the second time over: what took time to find out. */
 typedef struct checked_move {
-    double position[3], lo[3], hi[3], reach;
+    rgi_bound bound;
+    double reach;
     uint32_t slot;
     bool whole;  /* a linear part is concerned, or the object is moved twice: to be done from the start */
     bool inside; /* it stays in its cells */
@@ -193,11 +213,9 @@ static rg_result check_move(rg_scene *scene, const rg_pose_views *poses, uint64_
         rgi_fail_prefix("object %" PRIu64 " of the call: ", i);
         return result;
     }
-    rgi_copy(p.position, move->position);
-    rgi_copy(p.lo, move->lo);
-    rgi_copy(p.hi, move->hi);
+    move->bound = p.bound;
     move->reach = p.reach;
-    move->inside = rgi_grid_need_move(scene->grids[grid].grid, object->member, p.lo, p.hi, &need->grids[grid]);
+    move->inside = rgi_any_grid_need_move(scene->grids[grid].grid, object, &p.bound, &need->grids[grid]);
     move->whole = p.is_linear || object->linear != RGI_NONE || (object->grid & MARK);
     need->linears += p.is_linear && object->linear == RGI_NONE;
     touch(&need->touched, grid);
@@ -218,26 +236,27 @@ static rg_result prepare_move(rg_scene *scene, const rg_input *objects, const rg
     unmark(scene, objects, marked);
     if (!result) result = rgi_slots_reserve(&scene->linears, need->linears);
     for (uint32_t g = 0; g < scene->grid_places && !result; g++) {
-        if (is_touched(&need->touched, g)) result = rgi_grid_reserve(scene->grids[g].grid, &need->grids[g]);
+        if (is_touched(&need->touched, g)) result = rgi_any_grid_reserve(scene->grids[g].grid, &need->grids[g]);
     }
     return result;
 }
 
 static rg_result make_move(rg_scene *scene, const rg_pose_views *poses, uint64_t i, const checked_move *move) {
     rgi_object *object = rgi_scene_object(scene, move->slot);
-    rgi_grid *grid = scene->grids[object->grid].grid;
+    rgi_any_grid *grid = scene->grids[object->grid].grid;
     rg_result result = RG_OK;
     if (move->whole) {
         rgi_placing p;
         result = place_view(scene, poses, i, object->shape, object, &p);
-        return result ? result : rgi_move_one(scene, object, &p);
+        return result ? result : rgi_move_one(scene, move->slot, &p);
     }
     if (move->inside)
-        rgi_grid_move_inside(grid, object->member, move->lo, move->hi);
+        rgi_grid_move_inside(&grid->cells, object->place.block, move->bound.lo, move->bound.hi);
     else
-        result = rgi_grid_move(grid, object->member, move->lo, move->hi);
+        result = rgi_any_grid_move(grid, object, move->slot, &move->bound);
+    if (result) return result;
     object->reach = move->reach;
-    rgi_copy(move->position, object->position);
+    rgi_copy(move->bound.centre, object->position);
     return result;
 }
 

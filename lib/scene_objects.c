@@ -2,6 +2,7 @@
 /* Insert, move, remove and look up one object. */
 #include "scene_objects.h"
 
+#include "any_grid.h"
 #include "error.h"
 #include "struct_size.h"
 #include "vec.h"
@@ -14,18 +15,20 @@ enum { REPORT_LEAST = sizeof(rg_object_report) };
 /* The distance from the position to the farthest corner of the world box. */
 static double reach_of(const rgi_placing *p) {
     double far[3];
-    for (int a = 0; a < 3; a++) far[a] = rgi_max(fabs(p->lo[a] - p->position[a]), fabs(p->hi[a] - p->position[a]));
+    for (int a = 0; a < 3; a++)
+        far[a] = rgi_max(fabs(p->bound.lo[a] - p->bound.centre[a]), fabs(p->bound.hi[a] - p->bound.centre[a]));
     double largest = rgi_max_magnitude(far);
     return largest < INFINITY ? sqrt(rgi_dot(far, far)) : INFINITY;
 }
 
 static rg_result derive(const rg_shape *shape, rgi_placing *p) {
-    rg_result result = rgi_check_position(p->position);
+    rg_result result = rgi_check_position(p->bound.centre);
     if (result) return result;
-    bool ball = shape->kind == RG_SHAPE_SPHERE && !p->is_linear;
-    result = ball ? rgi_ball_bounds(p->radius, p->position, p->lo, p->hi)
-                  : rgi_shape_bounds(shape, p->position, p->is_linear ? p->linear.product : NULL, p->lo, p->hi);
-    if (!result) p->reach = ball ? p->radius : reach_of(p);
+    p->bound.ball = shape->kind == RG_SHAPE_SPHERE && !p->is_linear;
+    result = p->bound.ball ? rgi_ball_bounds(p->bound.radius, p->bound.centre, p->bound.lo, p->bound.hi)
+                           : rgi_shape_bounds(shape, p->bound.centre, p->is_linear ? p->linear.product : NULL,
+                                              p->bound.lo, p->bound.hi);
+    if (!result) p->reach = p->bound.ball ? p->bound.radius : reach_of(p);
     return result;
 }
 
@@ -43,17 +46,17 @@ rg_result rgi_place(const rg_shape *shape, const double position[3], const float
     rg_result result = scale == 0 ? RG_OK : rgi_check_scale(scale);
     if (result) return result;
     if (scale == 0) scale = 1;
-    rgi_copy(position, p->position);
-    p->radius = shape->kind == RG_SHAPE_SPHERE ? shape->of.radius * scale : 0;
-    p->is_linear = !is_plain(shape, matrix, scale, p->radius);
+    rgi_copy(position, p->bound.centre);
+    p->bound.radius = shape->kind == RG_SHAPE_SPHERE ? shape->of.radius * scale : 0;
+    p->is_linear = !is_plain(shape, matrix, scale, p->bound.radius);
     if (p->is_linear) result = rgi_linear_init(&p->linear, matrix, scale);
     return result ? result : derive(shape, p);
 }
 
 rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3], rgi_placing *p) {
     const rgi_linear *linear = rgi_scene_linear(scene, object);
-    rgi_copy(position, p->position);
-    p->radius = object->reach;
+    rgi_copy(position, p->bound.centre);
+    p->bound.radius = object->reach;
     p->is_linear = linear != NULL;
     if (linear) p->linear = *linear;
     return derive(object->shape, p);
@@ -90,7 +93,7 @@ static void set_linear(rg_scene *scene, rgi_object *object, const rgi_placing *p
 
 void rgi_set_pose(rg_scene *scene, rgi_object *object, const rgi_placing *p) {
     object->reach = p->reach;
-    rgi_copy(p->position, object->position);
+    rgi_copy(p->bound.centre, object->position);
     set_linear(scene, object, p);
 }
 
@@ -99,27 +102,31 @@ rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *p,
     rg_result result = rgi_slots_reserve(&scene->objects, 1);
     if (!result && p->is_linear) result = rgi_slots_reserve(&scene->linears, 1);
     if (result) return result;
-    uint32_t slot = rgi_slots_next(&scene->objects), member;
-    result = rgi_grid_insert(scene->grids[grid].grid, slot, p->lo, p->hi, &member);
+    /* The record is taken last, when nothing can fail any more; taking it clears what the grid noted there. */
+    uint32_t slot = rgi_slots_next(&scene->objects);
+    rgi_object *object = rgi_scene_object(scene, slot);
+    result = rgi_any_grid_insert(scene->grids[grid].grid, scene, slot, &p->bound);
     if (result) return result;
-    rgi_object *object = rgi_scene_object(scene, rgi_slots_take(&scene->objects));
+    const rgi_location place = object->place;
+    (void)rgi_slots_take(&scene->objects);
+    object->place = place;
     if (object->generation == 0) object->generation = 1;
     rg_shape_retain(shape);
     object->shape = shape;
     object->linear = RGI_NONE;
     object->mask = mask;
     object->grid = grid;
-    object->member = member;
     rgi_set_pose(scene, object, p);
     scene->object_count++;
     *id = rgi_object_id(object, slot);
     return RG_OK;
 }
 
-rg_result rgi_move_one(rg_scene *scene, rgi_object *object, const rgi_placing *p) {
+rg_result rgi_move_one(rg_scene *scene, uint32_t slot, const rgi_placing *p) {
+    rgi_object *object = rgi_scene_object(scene, slot);
     rg_result result = RG_OK;
     if (p->is_linear && object->linear == RGI_NONE) result = rgi_slots_reserve(&scene->linears, 1);
-    if (!result) result = rgi_grid_move(scene->grids[object->grid].grid, object->member, p->lo, p->hi);
+    if (!result) result = rgi_any_grid_move(scene->grids[object->grid].grid, object, slot, &p->bound);
     if (!result) rgi_set_pose(scene, object, p);
     return result;
 }
@@ -127,7 +134,7 @@ rg_result rgi_move_one(rg_scene *scene, rgi_object *object, const rgi_placing *p
 rg_shape *rgi_remove_one(rg_scene *scene, uint32_t slot) {
     rgi_object *object = rgi_scene_object(scene, slot);
     rg_shape *shape = object->shape;
-    rgi_grid_remove(scene->grids[object->grid].grid, object->member);
+    rgi_any_grid_remove(scene->grids[object->grid].grid, object, slot);
     if (object->linear != RGI_NONE) rgi_slots_give(&scene->linears, object->linear);
     object->shape = NULL;
     scene->object_count--;
@@ -148,7 +155,7 @@ rg_result rg_scene_insert(rg_scene *scene, rg_shape *shape, const rg_pose *pose,
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_insert_one(scene, shape, &p, UINT32_MAX, 0, &id);
-    if (!result) rgi_grid_settle(scene->grids[0].grid);
+    if (!result) rgi_any_grid_settle(scene->grids[0].grid, scene);
     if (!result && out) *out = id;
     return rgi_scene_end_change(scene, &frame, result);
 }
@@ -161,8 +168,8 @@ static rg_result move_by_id(rg_scene *scene, rg_object id, const double position
     rgi_object *object = rgi_scene_object(scene, slot);
     result = pose ? rgi_place(object->shape, position, pose->linear, pose->scale, &p)
                   : rgi_place_at(scene, object, position, &p);
-    if (!result) result = rgi_move_one(scene, object, &p);
-    if (!result) rgi_grid_settle(scene->grids[object->grid].grid);
+    if (!result) result = rgi_move_one(scene, slot, &p);
+    if (!result) rgi_any_grid_settle(scene->grids[object->grid].grid, scene);
     return result;
 }
 
@@ -201,7 +208,7 @@ rg_result rg_scene_remove(rg_scene *scene, rg_object id) {
     if (!result) {
         uint32_t grid = rgi_scene_object(scene, slot)->grid;
         rg_shape *shape = rgi_remove_one(scene, slot);
-        rgi_grid_settle(scene->grids[grid].grid);
+        rgi_any_grid_settle(scene->grids[grid].grid, scene);
         rg_shape_release(&shape);
     }
     return rgi_scene_end_change(scene, &frame, result);
@@ -211,7 +218,8 @@ rg_result rg_scene_remove(rg_scene *scene, rg_object id) {
 
 static void report_object(const rg_scene *scene, const rgi_object *object, rg_object_report *r) {
     const rgi_linear *linear = rgi_scene_linear(scene, object);
-    const rgi_member *member = rgi_grid_member(scene->grids[object->grid].grid, object->member);
+    rgi_placing p;
+    (void)rgi_place_at(scene, object, object->position, &p);
     memset(r, 0, sizeof *r);
     rgi_copy(object->position, r->pose.position);
     memcpy(r->pose.linear, linear ? linear->matrix : rgi_identity, sizeof r->pose.linear);
@@ -219,8 +227,8 @@ static void report_object(const rg_scene *scene, const rgi_object *object, rg_ob
     r->shape = object->shape;
     r->mask = object->mask;
     r->grid = rgi_scene_grid_id(scene, object->grid);
-    rgi_copy(member->lo, r->lo);
-    rgi_copy(member->hi, r->hi);
+    rgi_copy(p.bound.lo, r->lo);
+    rgi_copy(p.bound.hi, r->hi);
 }
 
 rg_result rg_scene_lookup(rg_scene *scene, rg_object id, rg_object_report *report) {

@@ -3,15 +3,14 @@
 #ifndef RAYGRID_LIB_SCENE_OBJECTS_H
 #define RAYGRID_LIB_SCENE_OBJECTS_H
 
+#include "lattice.h"
 #include "scene.h"
 
 /** Where an object is to be: checked, with all that is derived from it. */
 typedef struct rgi_placing {
-    double position[3];
-    double radius;  /* of a sphere that is not linear */
-    bool is_linear; /* has a record of its linear part and scale */
+    rgi_bound bound; /* its centre is the position; a ball is a sphere that is not linear */
+    bool is_linear;  /* has a record of its linear part and scale */
     rgi_linear linear;
-    double lo[3], hi[3];
     double reach;
 } rgi_placing;
 
@@ -33,7 +32,7 @@ rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot);
  */
 rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *placing, uint32_t mask, uint32_t grid,
                          rg_object *id);
-rg_result rgi_move_one(rg_scene *scene, rgi_object *object, const rgi_placing *placing);
+rg_result rgi_move_one(rg_scene *scene, uint32_t slot, const rgi_placing *placing);
 
 /** The part of a move that does not concern the grid. A record for a new linear part must have been reserved. */
 void rgi_set_pose(rg_scene *scene, rgi_object *object, const rgi_placing *placing);

@@ -14,9 +14,13 @@ void rgi_slots_init(rgi_slots *slots, rgi_memory *memory, size_t record_size, co
     slots->purpose = purpose;
 }
 
+static size_t chunk_bytes(const rgi_slots *slots) {
+    return (size_t)RGI_CHUNK * slots->record_size + RGI_SLACK;
+}
+
 void rgi_slots_free(rgi_slots *slots) {
     for (uint32_t i = 0; i < slots->chunk_count; i++)
-        rgi_release(slots->memory, slots->chunks[i], RGI_CHUNK, slots->record_size);
+        rgi_release(slots->memory, slots->chunks[i], 1, chunk_bytes(slots));
     rgi_release(slots->memory, slots->chunks, slots->chunk_room, sizeof *slots->chunks);
     rgi_slots_init(slots, slots->memory, slots->record_size, slots->purpose);
 }
@@ -44,8 +48,8 @@ rg_result rgi_slots_reserve(rgi_slots *slots, uint64_t count) {
     uint32_t chunk_count = (uint32_t)((needed + RGI_CHUNK - 1) >> RGI_CHUNK_BITS);
     rg_result result = make_room_for_pointers(slots, chunk_count);
     while (!result && slots->chunk_count < chunk_count) {
-        result = rgi_allocate(slots->memory, RGI_CHUNK, slots->record_size, slots->purpose,
-                              &slots->chunks[slots->chunk_count]);
+        result =
+            rgi_allocate(slots->memory, 1, chunk_bytes(slots), slots->purpose, &slots->chunks[slots->chunk_count]);
         if (!result) slots->chunk_count++;
     }
     return result;

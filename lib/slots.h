@@ -27,6 +27,9 @@ typedef struct rgi_slots {
     const char *purpose; /* for messages */
 } rgi_slots;
 
+/** Bytes that may be read, but not written, behind the last record of a chunk: kernels load whole vectors. */
+enum { RGI_SLACK = 64 };
+
 void rgi_slots_init(rgi_slots *slots, rgi_memory *memory, size_t record_size, const char *purpose);
 void rgi_slots_free(rgi_slots *slots);
 

@@ -3,9 +3,9 @@
  * Queries: rays are read through views, traced one by one through the grids, and what is wanted of the hits is
  * written.
  */
+#include "any_grid.h"
 #include "error.h"
 #include "exact.h"
-#include "scene.h"
 #include "struct_size.h"
 #include "vec.h"
 #include "views.h"
@@ -48,9 +48,12 @@ typedef struct query {
     rgi_walk walk;
     rgi_local_ray local;
     const rgi_object *testing; /* the object that is being tested, for the filter */
+    rg_object testing_id;
     uint32_t tests;
+    bool valid;
     bool failed;
     bool found;
+    bool done; /* nothing more is wanted */
     rg_object id;
     const rgi_object *object;
     rgi_candidate best;
@@ -120,8 +123,7 @@ static bool filter(void *context, const rgi_candidate *candidate) {
     query *q = context;
     rg_hit hit;
     if (q->failed) return false;
-    uint32_t slot = rgi_grid_member(q->call->scene->grids[q->testing->grid].grid, q->testing->member)->object;
-    hit_record(q, q->testing, rgi_object_id(q->testing, slot), candidate, ALL, &hit);
+    hit_record(q, q->testing, q->testing_id, candidate, ALL, &hit);
     int32_t answer = q->call->config.filter(q->call->config.filter_user, q->index, &hit);
     q->failed = answer < 0;
     return answer > 0;
@@ -136,15 +138,15 @@ static bool visit(void *context, uint32_t slot) {
     if (!(object->mask & q->ray.mask)) return false;
     q->tests++;
     q->testing = object;
+    q->testing_id = rgi_object_id(object, slot);
     q->local.t_max = q->walk.t_max;
     bool hit = rgi_object_intersect(object, rgi_scene_linear(scene, object), &q->ray, &q->local, &candidate);
     q->failed |= q->local.failed;
     if (q->failed) return true;
     if (!hit) return false;
-    rg_object id = rgi_object_id(object, slot);
-    if (q->found && candidate.t == q->best.t && id >= q->id) return false;
+    if (q->found && candidate.t == q->best.t && q->testing_id >= q->id) return false;
     q->found = true;
-    q->id = id;
+    q->id = q->testing_id;
     q->object = object;
     q->best = candidate;
     q->walk.t_max = candidate.t;
@@ -160,8 +162,7 @@ static void query_init(query *q, const call *c) {
     q->local.context = q;
 }
 
-/* Returns false if the ray is invalid. */
-static bool trace_one(query *q, uint64_t index) {
+static void query_begin(query *q, uint64_t index) {
     const call *c = q->call;
     double origin[3], direction[3];
     rgi_load3(&c->rays.origin, index, origin);
@@ -169,30 +170,83 @@ static bool trace_one(query *q, uint64_t index) {
     q->index = index;
     q->found = q->failed = q->local.failed = false;
     q->tests = q->walk.cells = 0;
-    if (!rgi_ray_init(&q->ray, origin, direction, rgi_load(&c->rays.t_min, index, 0),
-                      rgi_load(&c->rays.t_max, index, INFINITY),
-                      (uint32_t)rgi_load_integer(&c->rays.mask, index, UINT32_MAX)))
-        return false;
-    rgi_walk_init(&q->walk, q->ray.origin, q->ray.direction, q->ray.t_min, q->ray.t_max);
-    q->walk.visit = visit;
-    q->walk.context = q;
+    q->valid = rgi_ray_init(&q->ray, origin, direction, rgi_load(&c->rays.t_min, index, 0),
+                            rgi_load(&c->rays.t_max, index, INFINITY),
+                            (uint32_t)rgi_load_integer(&c->rays.mask, index, UINT32_MAX));
+    q->done = !q->valid;
     q->local.t_min = q->ray.t_min;
-    for (uint32_t g = 0; g < c->scene->grid_places; g++) {
-        const rgi_grid *grid = c->scene->grids[g].grid;
-        if (grid && grid->member_count && rgi_grid_walk(grid, &q->walk)) break;
-    }
-    return true;
+    q->walk.t_max = q->ray.t_max;
 }
 
-static void write_hit(const query *q, bool valid) {
+/* ------------------------------------------------------------------------------------------- through grids */
+
+/* What a kernel asks. */
+static bool ask(rgi_beam *beam, uint32_t slot) {
+    query *q = beam->query;
+    q->done = visit(q, slot);
+    beam->t_max = rgi_beam_above(&beam->scale, beam->pad, q->walk.t_max);
+    return q->done;
+}
+
+static bool visit_unbounded(query *q, const rgi_lattice *lattice) {
+    for (uint32_t i = 0; i < lattice->unbounded_count && !q->done; i++) q->done = visit(q, lattice->unbounded[i]);
+    return q->done;
+}
+
+/* Takes rays through a lattice, one or several side by side. */
+static void through_lattice(query *queries, uint32_t count, const rgi_lattice *lattice, const rgi_kernels *kernels) {
+    rgi_beam beams[RGI_PACKET];
+    uint32_t used = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        query *q = &queries[i];
+        rgi_beam *beam = &beams[used];
+        if (q->done || visit_unbounded(q, lattice)) continue;
+        if (!lattice->root || !rgi_beam_init(beam, lattice, &q->ray, q->walk.t_max)) continue;
+        beam->ask = ask;
+        beam->query = q;
+        used++;
+    }
+    if (used == 1)
+        kernels->trace_one(lattice, &beams[0]);
+    else if (used)
+        kernels->trace_some(lattice, beams, used);
+    for (uint32_t i = 0; i < used; i++) ((query *)beams[i].query)->walk.cells += beams[i].nodes;
+}
+
+static void through_cells(query *q, const rgi_grid *grid) {
+    double t_max = q->walk.t_max;
+    uint32_t cells = q->walk.cells;
+    rgi_walk_init(&q->walk, q->ray.origin, q->ray.direction, q->ray.t_min, t_max);
+    q->walk.visit = visit;
+    q->walk.context = q;
+    q->done = rgi_grid_walk(grid, &q->walk);
+    q->walk.cells += cells;
+}
+
+static void through_grids(query *queries, uint32_t count) {
+    const rg_scene *scene = queries->call->scene;
+    for (uint32_t g = 0; g < scene->grid_places; g++) {
+        const rgi_any_grid *store = scene->grids[g].grid;
+        if (!store || !store->count) continue;
+        if (rgi_any_grid_is_loose(store)) {
+            through_lattice(queries, count, &store->lattice, scene->kernels);
+            continue;
+        }
+        for (uint32_t i = 0; i < count; i++) {
+            if (!queries[i].done) through_cells(&queries[i], &store->cells);
+        }
+    }
+}
+
+static void write_hit(const query *q) {
     const rg_hit_views *v = &q->call->hits;
     uint64_t i = q->index;
     rg_hit hit;
-    if (valid && q->found && !q->failed) {
+    if (q->valid && q->found && !q->failed) {
         hit_record(q, q->object, q->id, &q->best, q->call->wanted, &hit);
     } else {
         memset(&hit, 0, sizeof hit);
-        hit.t = valid && !q->failed ? INFINITY : NAN;
+        hit.t = q->valid && !q->failed ? INFINITY : NAN;
         hit.object = RG_NO_OBJECT;
         hit.primitive = RG_NO_PRIMITIVE;
     }
@@ -215,18 +269,23 @@ static void write_hit(const query *q, bool valid) {
 /* ------------------------------------------------------------------------------------------------ many rays */
 
 static void trace_range(call *c, uint64_t first, uint64_t last) {
-    query q;
+    query queries[RGI_PACKET];
     uint64_t invalid = 0;
     bool failed = false;
-    query_init(&q, c);
-    for (uint64_t i = first; i < last; i++) {
-        bool valid = trace_one(&q, i);
-        invalid += !valid;
-        failed |= q.failed;
-        if (c->any)
-            rgi_store_integer(&c->occluded, i, valid && q.found && !q.failed);
-        else
-            write_hit(&q, valid);
+    for (uint32_t i = 0; i < RGI_PACKET && i < last - first; i++) query_init(&queries[i], c);
+    for (uint64_t at = first; at < last; at += RGI_PACKET) {
+        uint32_t count = last - at < RGI_PACKET ? (uint32_t)(last - at) : RGI_PACKET;
+        for (uint32_t i = 0; i < count; i++) query_begin(&queries[i], at + i);
+        through_grids(queries, count);
+        for (uint32_t i = 0; i < count; i++) {
+            const query *q = &queries[i];
+            invalid += !q->valid;
+            failed |= q->failed;
+            if (c->any)
+                rgi_store_integer(&c->occluded, q->index, q->valid && q->found && !q->failed);
+            else
+                write_hit(q);
+        }
     }
     if (invalid) __atomic_fetch_add(&c->invalid, invalid, __ATOMIC_RELAXED);
     if (failed) __atomic_store_n(&c->failed, 1, __ATOMIC_RELAXED);

@@ -35,7 +35,7 @@ typedef uint32_t rg_grid;
 typedef int32_t rg_grid_kind;
 
 enum {
-    /** What suits most scenes; at present the hierarchical kind. */
+    /** What suits most scenes: the loose kind. */
     RG_GRID_DEFAULT = 0,
     /** One level of cells; an object is listed in every cell that it overlaps. For objects of like size. */
     RG_GRID_UNIFORM = 1,
@@ -43,7 +43,13 @@ enum {
      * Levels of cells, each twice as wide as the level below; an object is listed at the level whose cells are no
      * smaller than it, so in at most 8 cells. Insert, move and remove cost the same whatever the sizes.
      */
-    RG_GRID_HIERARCHICAL = 2
+    RG_GRID_HIERARCHICAL = 2,
+    /**
+     * A lattice of cells, each half as wide as the one above it, made where objects are. An object is stored once, by
+     * its centre, in a cell that fits its size; tight boxes around what is stored decide what a ray looks into. It has
+     * no box that objects could leave, so nothing is rebuilt; resolution, lo, hi and rebuild_factor have no meaning.
+     */
+    RG_GRID_LOOSE = 3
 };
 
 /** For rebuild_factor: never rebuild by itself. */

@@ -33,7 +33,7 @@ def several():
     case.trace(*look)
     case.expect_grid("u", kind="uniform", objects=1)
     case.expect_grid("h", kind="hierarchical", objects=0)
-    case.expect_grid("d", kind="hierarchical", objects=1, rebuilds=0)
+    case.expect_grid("d", kind="loose", objects=1, rebuilds=0)
     yield case
 
     case = Case("grids-ties", "the lowest id wins over all grids, not the first grid", numerics=[12])
@@ -145,7 +145,7 @@ def refused():
         "factor-negative": ("RG_INVALID_VALUE", "rebuild_factor", dict(rebuild_factor=-2.0)),
         "factor-nan": ("RG_INVALID_VALUE", "rebuild_factor", dict(rebuild_factor=NAN)),
         "factor-infinite": ("RG_INVALID_VALUE", "rebuild_factor", dict(rebuild_factor=INF)),
-        "kind": ("RG_INVALID_ARGUMENT", "kind", dict(kind=3)),
+        "kind": ("RG_INVALID_ARGUMENT", "kind", dict(kind=4)),
         "kind-negative": ("RG_INVALID_ARGUMENT", "kind", dict(kind=-1)),
     }
     case = Case("grid-config-refused", "a bad configuration is refused by name; the grids stay as they were",

@@ -220,7 +220,7 @@ END_TEST
 START_TEST(configurations) {
     rg_grid_config config, given;
     ck_assert_int_eq(rgi_grid_config_read(&config, NULL), RG_OK);
-    ck_assert(config.kind == RG_GRID_HIERARCHICAL && config.rebuild_factor == 2);
+    ck_assert(config.kind == RG_GRID_LOOSE && config.rebuild_factor == 2);
 #define REFUSED(field, value, code)                                                                                  \
     do {                                                                                                             \
         ck_assert_int_eq(rg_grid_config_default(&given, sizeof given), RG_OK);                                       \
