@@ -17,12 +17,6 @@ enum {
     RGI_STACK = 256 /* of a beam; what goes deeper is walked by recursion */
 };
 
-/** What is still to be looked into, from where on along the ray. */
-typedef struct rgi_visit_later {
-    rgi_ref ref;
-    float t;
-} rgi_visit_later;
-
 /** Where the frame's t is zero, and how it grows with the ray's. */
 typedef struct rgi_beam_scale {
     double shift;  /* the t of the ray where the beam's is 0 */
@@ -40,6 +34,7 @@ typedef struct rgi_beam {
     float pad; /* what the rounding of origin and direction can do to a ball */
     float t_min, t_max;
     uint32_t negative; /* bits of the axes along which it runs down: the order of octants */
+    uint32_t towards[3], away[3]; /* where a node keeps the planes that the ray meets first and last, in floats */
     rgi_beam_scale scale;
     /** Intersects the object with the ray in double; may lower t_max. Returns true to end. */
     bool (*ask)(struct rgi_beam *beam, uint32_t slot);
@@ -50,11 +45,51 @@ typedef struct rgi_beam {
     uint32_t waiting; /* bits of the objects of `block` that are to be asked */
     rgi_ref block;
     float t[RGI_BLOCK]; /* where each is met at the earliest */
-    rgi_visit_later stack[RGI_STACK];
+    /* What is still to be looked into, and from where on along the ray. */
+    rgi_ref refs[RGI_STACK];
+    float ts[RGI_STACK];
 } rgi_beam;
 
 /** Fills all but ask and query; false if the ray passes all that is stored. */
 bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_ray *ray, double t_max);
+
+/**
+ * Up to RGI_PACKET rays that go the same way: all run along one axis in the same sense, and between four planes, two
+ * across each other axis. What none of them can meet is passed over for all at once.
+ *
+ * Of each ray's nearest hit so far only bounds are known, t_lo to t_hi, as long as they tell hits apart. Where they
+ * overlap, or where a hit is not certain, both are asked.
+ */
+typedef struct rgi_packet {
+    float origin[3][RGI_PACKET], direction[3][RGI_PACKET];
+    float inverse[3][RGI_PACKET], near[3][RGI_PACKET], far[3][RGI_PACKET];
+    float pad[RGI_PACKET];
+    float t_min[RGI_PACKET]; /* a bound from above: what is beyond is in range */
+    float t_first[RGI_PACKET]; /* and from below */
+    float t_lo[RGI_PACKET], t_hi[RGI_PACKET];
+    float best[RGI_PACKET];  /* slots, as bits, of the hits that are certain but not asked yet */
+    uint32_t certain;        /* bits of the rays that have one */
+    uint32_t active;         /* bits of the rays that are still on their way */
+    bool any;                /* the first hit ends a ray */
+    bool ask_all;            /* nothing is certain before it was asked */
+    rgi_beam_scale scale[RGI_PACKET];
+    /** As rgi_beam; gives the bounds of the nearest hit so far, in the frame. Returns true to end the ray. */
+    bool (*ask)(struct rgi_packet *packet, uint32_t ray, uint32_t slot);
+    void *queries[RGI_PACKET];
+    uint32_t visits;
+    /* the planes: x[across] - slope * x[axis], for rays between lo and hi */
+    uint32_t axis, across[2];
+    bool down; /* they run along the axis from high to low */
+    float slope_lo[2], slope_hi[2], lo[2], hi[2];
+    float norm_lo[2], norm_hi[2]; /* of the planes' normals */
+    float start_first, start_last; /* along the axis: the origins lie between; first in the sense of the rays */
+    float stretch;                 /* t is at least so many times the way along the axis */
+    float pad_most;
+    uint32_t negative;
+} rgi_packet;
+
+/** Fills the packet from beams that were made, if they go the same way; false if not. Fills not: ask, queries. */
+bool rgi_packet_init(rgi_packet *packet, const rgi_beam *beams, uint32_t count, const rgi_lattice *lattice);
 
 /** A bound from above for a t of the ray, in the frame. */
 float rgi_beam_above(const rgi_beam_scale *scale, float pad, double t);
@@ -67,6 +102,8 @@ typedef struct rgi_kernels {
     void (*trace_one)(const rgi_lattice *lattice, rgi_beam *beam);
     /** Takes up to RGI_PACKET rays through side by side, each on its own way, so that waits for memory overlap. */
     void (*trace_some)(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count);
+    /** Takes a packet through. At its end all that was certain has been asked, unless any hit will do. */
+    void (*trace_packet)(const rgi_lattice *lattice, rgi_packet *packet);
 } rgi_kernels;
 
 extern const rgi_kernels rgi_kernels_portable;

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The kernels, written once: each file kernels_*.c names an instruction set in RGI_ISA and includes this.
+ *
+ * Everything here passes over what can't be met, and asks for the rest. Bounds are explained in lattice.c (PAD) and
+ * beam.c; constants below name their share.
  */
 #include "beam.h"
 #include "simd.h"
@@ -13,18 +16,23 @@
 /* What rounding can make of the place where a ball is met, relative to its radius: see lattice.c, PAD. */
 #define BALL_PAD 0x1p-19f
 
-/* ----------------------------------------------------------------------------------------- the two tests */
+/* Which octant comes last, last but one, ..., first for rays that run down along the axes named by bits. */
+static const uint32_t orders[8][8] __attribute__((aligned(32))) = {
+    {7, 6, 5, 4, 3, 2, 1, 0}, {6, 7, 4, 5, 2, 3, 0, 1}, {5, 4, 7, 6, 1, 0, 3, 2}, {4, 5, 6, 7, 0, 1, 2, 3},
+    {3, 2, 1, 0, 7, 6, 5, 4}, {2, 3, 0, 1, 6, 7, 4, 5}, {1, 0, 3, 2, 5, 4, 7, 6}, {0, 1, 2, 3, 4, 5, 6, 7}};
 
-/* Octants of a node that the ray may meet, as bits; t: where. */
-RGI_INLINE uint32_t meet_octants(const rgi_node *n, const rgi_beam *b, float t[RGI_OCTANTS]) {
+/* --------------------------------------------------------------------------------- one ray, 8 or 16 bounds */
+
+/* Octants of a node that the ray may meet, as bits; *t: where. */
+RGI_INLINE uint32_t meet_octants(const rgi_node *n, const rgi_beam *b, f8 *t) {
     f8 first = f8_set(b->t_min), last = f8_set(b->t_max);
+    const float *planes = n->lo[0];
     for (int a = 0; a < 3; a++) {
-        bool down = b->negative >> a & 1;
         f8 inverse = f8_set(b->inverse[a]);
-        first = f8_max(f8_fma(f8_load(down ? n->hi[a] : n->lo[a]), inverse, f8_set(b->near[a])), first);
-        last = f8_min(f8_fma(f8_load(down ? n->lo[a] : n->hi[a]), inverse, f8_set(b->far[a])), last);
+        first = f8_max(f8_fma(f8_load(planes + b->towards[a]), inverse, f8_set(b->near[a])), first);
+        last = f8_min(f8_fma(f8_load(planes + b->away[a]), inverse, f8_set(b->far[a])), last);
     }
-    f8_store(t, first);
+    *t = first;
     return f8_le(first, last);
 }
 
@@ -62,26 +70,22 @@ RGI_INLINE uint32_t meet_balls(const float *f, uint32_t room, const rgi_beam *b,
     return met & f16_le(first, f16_set(b->t_max)) & f16_le(f16_set(b->t_min), f16_add(along, half));
 }
 
-RGI_INLINE uint32_t meet_block(const rgi_block *block, uint32_t kind, const rgi_beam *b, float t[RGI_BLOCK]) {
-    uint32_t room = rgi_block_room(kind), used = (1u << block->count) - 1;
-    if (kind < RGI_REF_BOXES) return used & meet_balls(block->lanes, room, b, t);
-    return used & meet_boxes(block->lanes, room, b, t);
+RGI_INLINE uint32_t used_lanes(const rgi_block *block) {
+    return (1u << block->count) - 1;
 }
 
-/* ------------------------------------------------------------------------------------------------ one ray */
-
-/* Bit i of the result is bit i ^ flip of `bits`: octants in the order in which a ray comes to them. */
-RGI_INLINE uint32_t flip_order(uint32_t bits, uint32_t flip) {
-    if (flip & 1) bits = (bits & 0x55) << 1 | (bits >> 1 & 0x55);
-    if (flip & 2) bits = (bits & 0x33) << 2 | (bits >> 2 & 0x33);
-    if (flip & 4) bits = (bits & 0x0F) << 4 | bits >> 4;
-    return bits;
+RGI_INLINE uint32_t meet_block(const rgi_block *block, const rgi_beam *b, float t[RGI_BLOCK]) {
+    uint32_t room = rgi_block_room(block->kind);
+    const float *lanes = rgi_block_lanes(block, room);
+    return used_lanes(block) &
+           (block->kind & RGI_BOXES ? meet_boxes(lanes, room, b, t) : meet_balls(lanes, room, b, t));
 }
+
+/* ------------------------------------------------------------------------------------------- rays on their own */
 
 /* Asks the objects that wait, the nearest first. Returns true if the walk is to end. */
 RGI_INLINE bool ask_waiting(const rgi_lattice *lattice, rgi_beam *b) {
-    rgi_block *block = rgi_block_at(lattice, b->block);
-    const uint32_t *slots = rgi_block_slots(block, rgi_ref_kind(b->block));
+    const uint32_t *slots = rgi_block_at(lattice, b->block)->slots;
     uint32_t waiting = b->waiting;
     b->waiting = 0;
     while (waiting) {
@@ -102,49 +106,49 @@ static bool walk_below(const rgi_lattice *lattice, rgi_beam *b, rgi_ref ref);
 /* By recursion: where the stack is full. Nodes are at most so many levels deep as there are sizes of cells. */
 static bool walk_node_below(const rgi_lattice *lattice, rgi_beam *b, const rgi_node *n) {
     float t[RGI_OCTANTS];
-    b->nodes++;
+    f8 first;
     if (n->own && walk_below(lattice, b, n->own)) return true;
-    uint32_t met = flip_order(meet_octants(n, b, t), b->negative);
-    for (; met; met &= met - 1) {
-        uint32_t lane = (uint32_t)__builtin_ctz(met) ^ b->negative;
-        if (t[lane] <= b->t_max && walk_below(lattice, b, n->child[lane])) return true;
+    uint32_t met = meet_octants(n, b, &first);
+    f8_store(t, first);
+    for (uint32_t i = RGI_OCTANTS; i-- > 0;) {
+        uint32_t octant = orders[b->negative][i];
+        if (!(met >> octant & 1) || t[octant] > b->t_max) continue;
+        if (walk_below(lattice, b, n->child[octant])) return true;
     }
     return false;
 }
 
 static bool walk_below(const rgi_lattice *lattice, rgi_beam *b, rgi_ref ref) {
-    if (rgi_ref_kind(ref) == RGI_REF_NODE)
-        return walk_node_below(lattice, b, rgi_node_at(lattice, rgi_ref_index(ref)));
+    if (!rgi_is_block(ref)) {
+        b->nodes++;
+        return walk_node_below(lattice, b, rgi_arena_at(&lattice->arena, ref));
+    }
     for (; ref; ref = rgi_block_at(lattice, ref)->next) {
         b->nodes++;
         b->block = ref;
-        b->waiting = meet_block(rgi_block_at(lattice, ref), rgi_ref_kind(ref), b, b->t);
+        b->waiting = meet_block(rgi_block_at(lattice, ref), b, b->t);
         if (ask_waiting(lattice, b)) return true;
     }
     return false;
 }
 
 RGI_INLINE void push(rgi_beam *b, rgi_ref ref, float t) {
-    b->stack[b->depth].ref = ref;
-    b->stack[b->depth++].t = t;
+    b->refs[b->depth] = ref;
+    b->ts[b->depth++] = t;
 }
 
 RGI_INLINE void fetch_ahead(const rgi_lattice *lattice, rgi_ref ref) {
-    const char *at = rgi_ref_kind(ref) == RGI_REF_NODE ? (const char *)rgi_node_at(lattice, rgi_ref_index(ref))
-                                                       : (const char *)rgi_block_at(lattice, ref);
-    for (int i = 0; i < 4; i++) __builtin_prefetch(at + 64 * i);
+    const char *at = rgi_arena_at(&lattice->arena, ref);
+    for (int i = 0; i < 4; i++) __builtin_prefetch(at + RGI_LINE * i);
 }
 
 /* Returns true if the walk is to end. */
 RGI_INLINE bool visit_node(const rgi_lattice *lattice, rgi_beam *b, const rgi_node *n, float from) {
-    float t[RGI_OCTANTS];
-    if (b->depth + RGI_OCTANTS + 1 > RGI_STACK) return walk_node_below(lattice, b, n);
-    uint32_t met = flip_order(meet_octants(n, b, t), b->negative);
-    while (met) {
-        uint32_t i = 31 - (uint32_t)__builtin_clz(met), lane = i ^ b->negative;
-        push(b, n->child[lane], t[lane]);
-        met ^= 1u << i;
-    }
+    f8 t;
+    /* Room for 8 children, 8 more that are written and not kept, and its own chain. */
+    if (b->depth + 2 * RGI_OCTANTS + 1 > RGI_STACK) return walk_node_below(lattice, b, n);
+    uint32_t met = meet_octants(n, b, &t);
+    b->depth += f8_keep(met, orders[b->negative], t, n->child, b->ts + b->depth, b->refs + b->depth);
     if (n->own) push(b, n->own, from);
     return false;
 }
@@ -152,26 +156,26 @@ RGI_INLINE bool visit_node(const rgi_lattice *lattice, rgi_beam *b, const rgi_no
 /* One step on the way of a ray: asks what waits, or looks into the next node or block. Returns false at the end. */
 RGI_INLINE bool step(const rgi_lattice *lattice, rgi_beam *b, bool ahead) {
     if (b->waiting && ask_waiting(lattice, b)) return false;
-    rgi_visit_later next;
+    rgi_ref ref;
+    float t;
     do {
         if (b->depth == 0) return false;
-        next = b->stack[--b->depth];
-    } while (next.t > b->t_max);
+        t = b->ts[--b->depth];
+    } while (t > b->t_max);
+    ref = b->refs[b->depth];
     b->nodes++;
-    if (rgi_ref_kind(next.ref) == RGI_REF_NODE) {
-        if (visit_node(lattice, b, rgi_node_at(lattice, rgi_ref_index(next.ref)), next.t)) return false;
+    if (!rgi_is_block(ref)) {
+        if (visit_node(lattice, b, rgi_arena_at(&lattice->arena, ref), t)) return false;
     } else {
-        rgi_block *block = rgi_block_at(lattice, next.ref);
-        uint32_t kind = rgi_ref_kind(next.ref);
-        if (block->next) push(b, block->next, next.t);
-        b->waiting = meet_block(block, kind, b, b->t);
-        b->block = next.ref;
+        const rgi_block *block = rgi_block_at(lattice, ref);
+        if (block->next) push(b, block->next, t);
+        b->waiting = meet_block(block, b, b->t);
+        b->block = ref;
         if (!ahead) return true;
-        const uint32_t *slots = rgi_block_slots(block, kind);
         for (uint32_t rest = b->waiting; rest; rest &= rest - 1)
-            __builtin_prefetch(rgi_slots_at(lattice->objects, slots[__builtin_ctz(rest)]));
+            __builtin_prefetch(rgi_slots_at(lattice->objects, block->slots[__builtin_ctz(rest)]));
     }
-    if (ahead && b->depth) fetch_ahead(lattice, b->stack[b->depth - 1].ref);
+    if (ahead && b->depth) fetch_ahead(lattice, b->refs[b->depth - 1]);
     return true;
 }
 
@@ -191,4 +195,197 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
     }
 }
 
-const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), trace_one, trace_some};
+/* ------------------------------------------------------------------------------------------------- packets */
+
+/*
+ * Nodes are at most some 103 levels deep: one for each width of cells from 2^-40 to 2^63. Each leaves 8 entries at
+ * the most when the next is looked into.
+ */
+enum { PACKET_STACK = 1024 };
+
+typedef struct packet_stack {
+    uint32_t depth;
+    float most; /* of t_hi: what is farther concerns no ray any more */
+    float ts[PACKET_STACK];
+    rgi_ref refs[PACKET_STACK];
+} packet_stack;
+
+/* Boxes that some ray of the packet may meet, as bits; *t: a bound from below of where. lo and hi: three arrays each,
+ * `room` floats apart. */
+#define MEET_TOGETHER(wide, lanes)                                                                                   \
+    RGI_INLINE uint32_t meet_together_##wide(const float *lo, const float *hi, uint32_t room, const rgi_packet *p,   \
+                                             float most, wide *t) {                                                  \
+        uint32_t met = (uint32_t)((1ull << (lanes)) - 1);                                                            \
+        for (int i = 0; i < 2; i++) {                                                                                \
+            const float *lo_k = lo + p->axis * room, *hi_k = hi + p->axis * room;                                    \
+            wide below = wide##_fma(wide##_set(-p->slope_hi[i]), wide##_load(p->slope_hi[i] >= 0 ? hi_k : lo_k),     \
+                                    wide##_load(lo + p->across[i] * room));                                          \
+            wide above = wide##_fma(wide##_set(-p->slope_lo[i]), wide##_load(p->slope_lo[i] >= 0 ? lo_k : hi_k),     \
+                                    wide##_load(hi + p->across[i] * room));                                          \
+            met &= wide##_le(below, wide##_set(p->hi[i])) & wide##_le(wide##_set(p->lo[i]), above);                  \
+        }                                                                                                            \
+        wide sense = wide##_set(p->down ? -1.0f : 1.0f);                                                             \
+        wide near = wide##_mul(wide##_load((p->down ? hi : lo) + p->axis * room), sense);                            \
+        wide far = wide##_mul(wide##_load((p->down ? lo : hi) + p->axis * room), sense);                             \
+        *t = wide##_mul(wide##_sub(near, wide##_set(p->start_last)), wide##_set(p->stretch));                        \
+        return met & wide##_le(*t, wide##_set(most)) & wide##_le(wide##_set(p->start_first), far);                   \
+    }
+
+MEET_TOGETHER(f8, 8)
+MEET_TOGETHER(f16, 16)
+
+/* The same for balls. */
+RGI_INLINE uint32_t meet_balls_together(const float *f, uint32_t room, const rgi_packet *p, float most) {
+    uint32_t met = 0xFFFF;
+    f16 along = f16_load(f + p->axis * room), radius = f16_add(f16_load(f + 3 * room), f16_set(4 * p->pad_most));
+    for (int i = 0; i < 2; i++) {
+        f16 across = f16_load(f + p->across[i] * room);
+        f16 below = f16_sub(f16_fma(f16_set(-p->slope_hi[i]), along, across), f16_set(p->hi[i]));
+        f16 above = f16_sub(f16_set(p->lo[i]), f16_fma(f16_set(-p->slope_lo[i]), along, across));
+        met &= f16_le(below, f16_mul(radius, f16_set(p->norm_hi[i])));
+        met &= f16_le(above, f16_mul(radius, f16_set(p->norm_lo[i])));
+    }
+    along = f16_mul(along, f16_set(p->down ? -1.0f : 1.0f));
+    met &= f16_le(f16_sub(f16_sub(along, radius), f16_set(p->start_last)), f16_set(most));
+    return met & f16_le(f16_set(p->start_first), f16_add(along, radius));
+}
+
+/* Asks about one object for one ray, after the one that was certain so far. */
+static void settle(rgi_packet *p, uint32_t ray, uint32_t slot) {
+    uint32_t bit = 1u << ray, best;
+    bool end = false;
+    if (p->certain & bit) {
+        memcpy(&best, &p->best[ray], sizeof best);
+        p->certain &= ~bit;
+        end = p->ask(p, ray, best);
+    }
+    if (!end) end = p->ask(p, ray, slot);
+    if (end) p->active &= ~bit;
+}
+
+static void settle_all(rgi_packet *p, uint32_t rays, uint32_t slot) {
+    for (; rays; rays &= rays - 1) settle(p, (uint32_t)__builtin_ctz(rays), slot);
+}
+
+/* One ball, all rays. Returns whether t_hi of some ray may have changed. */
+RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_t slot) {
+    f16 to[3], along = f16_set(0), square = f16_set(0), pad = f16_load(p->pad);
+    for (int a = 0; a < 3; a++) {
+        to[a] = f16_sub(f16_set(centre[a]), f16_load(p->origin[a]));
+        along = f16_fma(to[a], f16_load(p->direction[a]), along);
+    }
+    for (int a = 0; a < 3; a++) {
+        f16 foot = f16_sub(to[a], f16_mul(along, f16_load(p->direction[a])));
+        square = f16_fma(foot, foot, square);
+    }
+    f16 radius = f16_add(f16_set(r), pad), zero = f16_set(0);
+    f16 inside = f16_sub(f16_mul(radius, radius), square);
+    uint32_t met = f16_le(zero, inside) & p->active;
+    if (!met) return false;
+    f16 half = f16_fma(radius, f16_set(BALL_PAD), f16_sqrt(f16_max(inside, zero)));
+    f16 first = f16_sub(along, half), t_hi = f16_load(p->t_hi);
+    met &= f16_le(first, t_hi) & f16_le(f16_load(p->t_first), f16_add(along, half));
+    if (!met) return false;
+    uint32_t certain = 0;
+    if (!p->ask_all) {
+        /* The smallest ball that the real one can be, and the latest t at which it can be met. */
+        f16 way = f16_add(radius, f16_max(along, f16_sub(zero, along)));
+        f16 least = f16_sub(f16_sub(radius, f16_mul(way, f16_set(0x1p-16f))), f16_mul(pad, f16_set(8)));
+        f16 within = f16_sub(f16_mul(least, least), square);
+        f16 latest = f16_sub(along, f16_sqrt(f16_max(within, zero)));
+        latest = f16_add(f16_fma(way, f16_set(0x1p-18f), latest), f16_mul(pad, f16_set(4)));
+        f16 t_lo = f16_load(p->t_lo);
+        certain = met & f16_le(zero, within) & f16_le(zero, least) & f16_le(f16_load(p->t_min), first);
+        certain &= ~f16_le(t_lo, latest);
+        if (p->any) {
+            p->certain |= certain;
+            p->active &= ~certain;
+        } else {
+            float bits;
+            memcpy(&bits, &slot, sizeof bits);
+            f16_store(p->t_lo, f16_pick(certain, first, t_lo));
+            f16_store(p->t_hi, f16_pick(certain, latest, t_hi));
+            f16_store(p->best, f16_pick(certain, f16_set(bits), f16_load(p->best)));
+            p->certain |= certain;
+        }
+    }
+    settle_all(p, met & ~certain, slot);
+    return true;
+}
+
+RGI_INLINE bool meet_box(rgi_packet *p, const float *lo, const float *hi, uint32_t room, uint32_t slot) {
+    f16 first = f16_load(p->t_first), last = f16_load(p->t_hi);
+    for (uint32_t a = 0; a < 3; a++) {
+        f16 inverse = f16_load(p->inverse[a]);
+        f16 one = f16_mul(f16_set(lo[a * room]), inverse), other = f16_mul(f16_set(hi[a * room]), inverse);
+        first = f16_max(f16_add(f16_min(one, other), f16_load(p->near[a])), first);
+        last = f16_min(f16_add(f16_max(one, other), f16_load(p->far[a])), last);
+    }
+    uint32_t met = f16_le(first, last) & p->active;
+    settle_all(p, met, slot);
+    return met != 0;
+}
+
+RGI_INLINE float farthest(const rgi_packet *p) {
+    return f16_most(f16_pick(p->active, f16_load(p->t_hi), f16_set(-INFINITY)));
+}
+
+RGI_INLINE void visit_block(rgi_packet *p, packet_stack *s, const rgi_block *block) {
+    uint32_t room = rgi_block_room(block->kind), met;
+    const float *f = rgi_block_lanes(block, room);
+    bool boxes = block->kind & RGI_BOXES, changed = false;
+    f16 t;
+    if (boxes)
+        met = meet_together_f16(f, f + 3 * room, room, p, s->most, &t);
+    else
+        met = meet_balls_together(f, room, p, s->most);
+    for (met &= used_lanes(block); met; met &= met - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(met);
+        if (boxes) {
+            changed |= meet_box(p, f + i, f + 3 * room + i, room, block->slots[i]);
+        } else {
+            const float centre[3] = {f[i], f[room + i], f[2 * room + i]};
+            changed |= meet_ball(p, centre, f[3 * room + i], block->slots[i]);
+        }
+    }
+    if (changed) s->most = farthest(p);
+}
+
+static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
+    packet_stack s;
+    s.depth = 1;
+    s.refs[0] = lattice->root;
+    s.ts[0] = -INFINITY;
+    s.most = farthest(p);
+    while (s.depth && p->active) {
+        float t = s.ts[--s.depth];
+        rgi_ref ref = s.refs[s.depth];
+        if (t > s.most) continue;
+        p->visits++;
+        if (rgi_is_block(ref)) {
+            const rgi_block *block = rgi_block_at(lattice, ref);
+            if (block->next) {
+                s.refs[s.depth] = block->next;
+                s.ts[s.depth++] = t;
+            }
+            visit_block(p, &s, block);
+            continue;
+        }
+        const rgi_node *n = rgi_arena_at(&lattice->arena, ref);
+        f8 ts;
+        uint32_t met = meet_together_f8(n->lo[0], n->hi[0], RGI_OCTANTS, p, s.most, &ts);
+        s.depth += f8_keep(met, orders[p->negative], ts, n->child, s.ts + s.depth, s.refs + s.depth);
+        if (n->own) {
+            s.refs[s.depth] = n->own;
+            s.ts[s.depth++] = t;
+        }
+    }
+    if (p->any) return;
+    for (uint32_t rays = p->certain; rays; rays &= rays - 1) {
+        uint32_t ray = (uint32_t)__builtin_ctz(rays), best;
+        memcpy(&best, &p->best[ray], sizeof best);
+        (void)p->ask(p, ray, best);
+    }
+}
+
+const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), trace_one, trace_some, trace_packet};

@@ -95,14 +95,14 @@ static bool make_entry(const rgi_lattice *lattice, uint32_t slot, const rgi_boun
 }
 
 static bool is_ball_block(uint32_t kind) {
-    return kind < RGI_REF_BOXES;
+    return !(kind & RGI_BOXES);
 }
 
-static void read_entry(rgi_block *b, uint32_t kind, uint32_t lane, entry *e) {
-    uint32_t room = rgi_block_room(kind);
-    const float *f = b->lanes + lane;
-    e->ball = is_ball_block(kind);
-    e->slot = rgi_block_slots(b, kind)[lane];
+static void read_entry(const rgi_block *b, uint32_t lane, entry *e) {
+    uint32_t room = rgi_block_room(b->kind);
+    const float *f = rgi_block_lanes(b, room) + lane;
+    e->ball = is_ball_block(b->kind);
+    e->slot = b->slots[lane];
     for (int a = 0; a < 3; a++) {
         if (e->ball) {
             e->centre[a] = f[a * room];
@@ -115,10 +115,10 @@ static void read_entry(rgi_block *b, uint32_t kind, uint32_t lane, entry *e) {
     complete_entry(e);
 }
 
-static void write_bounds(rgi_block *b, uint32_t kind, uint32_t lane, const entry *e) {
-    uint32_t room = rgi_block_room(kind);
-    float *f = b->lanes + lane;
-    if (is_ball_block(kind)) {
+static void write_bounds(rgi_block *b, uint32_t lane, const entry *e) {
+    uint32_t room = rgi_block_room(b->kind);
+    float *f = rgi_block_lanes(b, room) + lane;
+    if (is_ball_block(b->kind)) {
         for (int a = 0; a < 3; a++) f[a * room] = e->centre[a];
         f[3 * room] = e->radius;
     } else {
@@ -135,28 +135,35 @@ static rgi_location *place_of(const rgi_lattice *lattice, uint32_t slot) {
 
 static void write_entry(const rgi_lattice *lattice, rgi_ref ref, uint32_t lane, const entry *e) {
     rgi_block *b = rgi_block_at(lattice, ref);
-    uint32_t kind = rgi_ref_kind(ref);
     rgi_location *place = place_of(lattice, e->slot);
-    write_bounds(b, kind, lane, e);
-    rgi_block_slots(b, kind)[lane] = e->slot;
+    write_bounds(b, lane, e);
+    b->slots[lane] = e->slot;
     place->block = ref;
     place->lane = lane;
 }
 
 /* ---------------------------------------------------------------------------------------- nodes and boxes */
 
-static bool is_node(rgi_ref ref) {
-    return rgi_ref_kind(ref) == RGI_REF_NODE;
+static uint32_t node_number(rgi_ref ref) {
+    return ref >> 2;
 }
 
+/* A record, or 0 without memory. */
 static rgi_ref take(rgi_lattice *lattice, uint32_t kind) {
-    rgi_slots *pool = &lattice->pools[kind];
-    if (rgi_slots_reserve(pool, 1) || rgi_slots_next(pool) >> RGI_REF_BITS) return 0;
-    return kind << RGI_REF_BITS | rgi_slots_take(pool);
+    rgi_fail_quietly(true);
+    rg_result result = rgi_arena_reserve(&lattice->arena, kind, 1);
+    rgi_fail_quietly(false);
+    if (result) return 0;
+    rgi_ref ref = rgi_arena_take(&lattice->arena, kind);
+    if (kind == RGI_NODES) return ref;
+    rgi_block *b = rgi_block_at(lattice, ref);
+    b->kind = (uint8_t)kind;
+    b->count = 0;
+    return ref;
 }
 
-static void give(rgi_lattice *lattice, rgi_ref ref) {
-    rgi_slots_give(&lattice->pools[rgi_ref_kind(ref)], rgi_ref_index(ref));
+static void give(rgi_lattice *lattice, uint32_t kind, rgi_ref ref) {
+    rgi_arena_give(&lattice->arena, kind, ref);
 }
 
 /* Where the reference to a child, a chain, or the root is. */
@@ -220,11 +227,12 @@ static bool unite_chain(const rgi_lattice *lattice, rgi_ref chain, float lo[3], 
     if (chain && rgi_block_at(lattice, chain)->length > LONG_TO_TIGHTEN) return false;
     for (rgi_ref ref = chain; ref;) {
         rgi_block *b = rgi_block_at(lattice, ref);
-        uint32_t kind = rgi_ref_kind(ref), room = rgi_block_room(kind);
-        bool ball = is_ball_block(kind);
+        uint32_t room = rgi_block_room(b->kind);
+        const float *lanes = rgi_block_lanes(b, room);
+        bool ball = is_ball_block(b->kind);
         for (int a = 0; a < 3; a++) {
-            const float *at = b->lanes + (size_t)a * room,
-                        *far = b->lanes + (size_t)3 * room + (ball ? 0 : (size_t)a * room);
+            const float *at = lanes + (size_t)a * room,
+                        *far = lanes + (size_t)3 * room + (ball ? 0 : (size_t)a * room);
             for (uint32_t i = 0; i < b->count; i++) {
                 float l = ball ? at[i] - far[i] : at[i], h = ball ? at[i] + far[i] : far[i];
                 if (l < lo[a]) lo[a] = l;
@@ -310,7 +318,7 @@ static void link_block(rgi_lattice *lattice, uint32_t parent, rgi_ref ref) {
         rgi_block *old = rgi_block_at(lattice, *head);
         old->previous = ref;
         b->stale = old->stale;
-        b->length = (uint16_t)(old->length < RGI_LONG ? old->length + 1 : RGI_LONG);
+        b->length = (uint8_t)(old->length < RGI_LONG ? old->length + 1 : RGI_LONG);
     }
     *head = ref;
     cell_of(lattice, parent, b->centre, &b->half);
@@ -320,15 +328,19 @@ static void unlink_block(rgi_lattice *lattice, rgi_ref ref) {
     rgi_block *b = rgi_block_at(lattice, ref);
     rgi_ref *head = holder(lattice, b->parent);
     rgi_block *first = rgi_block_at(lattice, *head);
-    uint16_t length = first->length;
+    uint8_t length = first->length;
     uint8_t stale = first->stale;
     if (b->previous) rgi_block_at(lattice, b->previous)->next = b->next;
     if (b->next) rgi_block_at(lattice, b->next)->previous = b->previous;
     if (*head == ref) *head = b->next;
     if (!*head) return;
     first = rgi_block_at(lattice, *head);
-    first->length = (uint16_t)(length < RGI_LONG ? length - 1 : RGI_LONG);
+    first->length = (uint8_t)(length < RGI_LONG ? length - 1 : RGI_LONG);
     first->stale = stale;
+}
+
+static uint32_t kind_for(uint32_t room, bool ball) {
+    return room | (ball ? 0 : RGI_BOXES);
 }
 
 /* A block with what `old`, the first of its chain, holds, of another kind, in its place. False: no memory. */
@@ -338,19 +350,16 @@ static bool replace_block(rgi_lattice *lattice, rgi_ref old, uint32_t kind) {
     rgi_block *from = rgi_block_at(lattice, old), *to = rgi_block_at(lattice, new);
     uint32_t parent = from->parent;
     memcpy(to, from, sizeof *to);
+    to->kind = (uint8_t)kind;
     for (uint32_t i = 0; i < from->count; i++) {
         entry e;
-        read_entry(from, rgi_ref_kind(old), i, &e);
+        read_entry(from, i, &e);
         write_entry(lattice, new, i, &e);
     }
     if (to->next) rgi_block_at(lattice, to->next)->previous = new;
     *holder(lattice, parent) = new;
-    give(lattice, old);
+    give(lattice, from->kind, old);
     return true;
-}
-
-static uint32_t smallest_kind(bool ball) {
-    return ball ? RGI_REF_BALLS : RGI_REF_BOXES;
 }
 
 /* Makes the first block of a chain one that has room for the entry. False: no memory, and nothing has changed. */
@@ -358,17 +367,16 @@ static bool make_room(rgi_lattice *lattice, uint32_t parent, const entry *e) {
     rgi_ref head = *holder(lattice, parent);
     if (head) {
         const rgi_block *b = rgi_block_at(lattice, head);
-        uint32_t kind = rgi_ref_kind(head), room = rgi_block_room(kind);
+        uint32_t kind = b->kind, room = rgi_block_room(kind);
         bool turn = is_ball_block(kind) && !e->ball;
         if (b->count < room && !turn) return true;
         if (b->count < RGI_BLOCK) {
-            uint32_t wanted = kind + (turn ? RGI_REF_BOXES - RGI_REF_BALLS : 0);
-            return replace_block(lattice, head, wanted + (b->count == room));
+            uint32_t larger = b->count == room ? 2 * room : room;
+            return replace_block(lattice, head, kind_for(larger, e->ball && is_ball_block(kind)));
         }
     }
-    rgi_ref new = take(lattice, smallest_kind(e->ball) + (head ? 2 : 0));
+    rgi_ref new = take(lattice, kind_for(head ? RGI_BLOCK : RGI_SMALLEST, e->ball));
     if (!new) return false;
-    rgi_block_at(lattice, new)->count = 0;
     link_block(lattice, parent, new);
     return true;
 }
@@ -385,9 +393,9 @@ static bool add_to_chain(rgi_lattice *lattice, uint32_t parent, const entry *e) 
 
 /* A node with an empty box for each octant; *index is its number. False: no memory. */
 static bool make_node(rgi_lattice *lattice, const rgi_cell *cell, uint32_t *index) {
-    rgi_ref ref = take(lattice, RGI_REF_NODE);
+    rgi_ref ref = take(lattice, RGI_NODES);
     if (!ref) return false;
-    *index = rgi_ref_index(ref);
+    *index = node_number(ref);
     rgi_node *n = rgi_node_at(lattice, *index);
     memset(n, 0, sizeof *n);
     for (int a = 0; a < 3; a++) {
@@ -414,7 +422,7 @@ static float widest(const rgi_lattice *lattice, uint32_t parent) {
 /* Puts a node between `parent` and the node there, with a cell that also covers the entry. False: it can't be. */
 static bool wrap(rgi_lattice *lattice, uint32_t parent, const entry *e) {
     rgi_ref inner = *holder(lattice, parent);
-    rgi_node *in = rgi_node_at(lattice, rgi_ref_index(inner));
+    rgi_node *in = rgi_node_at(lattice, node_number(inner));
     rgi_cell cell;
     uint32_t index;
     float lo[3], hi[3];
@@ -428,7 +436,7 @@ static bool wrap(rgi_lattice *lattice, uint32_t parent, const entry *e) {
     rgi_node *n = rgi_node_at(lattice, index);
     uint32_t lane = octant(n, in->centre);
     get_box(lattice, parent, lo, hi);
-    *holder(lattice, parent) = (rgi_ref)RGI_REF_NODE << RGI_REF_BITS | index;
+    *holder(lattice, parent) = index << 2;
     n->parent = parent;
     n->child[lane] = inner;
     n->nodes = 1;
@@ -455,7 +463,7 @@ static uint32_t count_movable(const rgi_lattice *lattice, rgi_ref chain, float h
     for (rgi_ref ref = chain; ref; ref = rgi_block_at(lattice, ref)->next) {
         rgi_block *b = rgi_block_at(lattice, ref);
         for (uint32_t i = 0; i < b->count; i++) {
-            read_entry(b, rgi_ref_kind(ref), i, &e);
+            read_entry(b, i, &e);
             movable += e.least <= half;
         }
     }
@@ -471,7 +479,7 @@ static bool parting_cell(const rgi_lattice *lattice, uint32_t parent, rgi_ref ch
     for (rgi_ref ref = chain; ref; ref = rgi_block_at(lattice, ref)->next) {
         rgi_block *b = rgi_block_at(lattice, ref);
         for (uint32_t i = 0; i < b->count; i++) {
-            read_entry(b, rgi_ref_kind(ref), i, &e);
+            read_entry(b, i, &e);
             look_at(&s, &e);
         }
     }
@@ -487,8 +495,10 @@ static bool parting_cell(const rgi_lattice *lattice, uint32_t parent, rgi_ref ch
 static bool reserve_blocks(rgi_lattice *lattice, uint32_t count) {
     rg_result result = RG_OK;
     rgi_fail_quietly(true);
-    for (uint32_t kind = RGI_REF_BALLS; kind < RGI_POOLS && !result; kind++)
-        result = rgi_slots_reserve(&lattice->pools[kind], count);
+    for (uint32_t room = RGI_SMALLEST; room <= RGI_BLOCK && !result; room *= 2) {
+        result = rgi_arena_reserve(&lattice->arena, room, count);
+        if (!result && lattice->boxes) result = rgi_arena_reserve(&lattice->arena, room | RGI_BOXES, count);
+    }
     rgi_fail_quietly(false);
     return result == RG_OK;
 }
@@ -509,7 +519,7 @@ static bool part(rgi_lattice *lattice, uint32_t parent, const entry *more) {
     if (!parting_cell(lattice, parent, chain, more, &cell)) return false;
     /* At most 9 chains, each going through the sizes of blocks. */
     if (!reserve_blocks(lattice, RGI_OCTANTS + 1 + length) || !make_node(lattice, &cell, &index)) return false;
-    *holder(lattice, parent) = (rgi_ref)RGI_REF_NODE << RGI_REF_BITS | index;
+    *holder(lattice, parent) = index << 2;
     rgi_node_at(lattice, index)->parent = parent;
     for (rgi_ref ref = chain; ref; ref = next) {
         rgi_block *b = rgi_block_at(lattice, ref);
@@ -517,10 +527,10 @@ static bool part(rgi_lattice *lattice, uint32_t parent, const entry *more) {
         next = b->next;
         moved += b->count;
         for (uint32_t i = 0; i < b->count; i++) {
-            read_entry(b, rgi_ref_kind(ref), i, &e);
+            read_entry(b, i, &e);
             put(lattice, index, &e);
         }
-        give(lattice, ref);
+        give(lattice, b->kind, ref);
     }
     if (parent != RGI_ROOT) {
         rgi_node_at(lattice, parent >> 4)->nodes++;
@@ -536,11 +546,11 @@ static uint32_t find_chain(rgi_lattice *lattice, const entry *e) {
     uint32_t parent = RGI_ROOT;
     for (;;) {
         rgi_ref ref = *holder(lattice, parent);
-        if (!is_node(ref)) {
+        if (!rgi_is_node(ref)) {
             if (!ref || rgi_block_at(lattice, ref)->count < RGI_BLOCK || !part(lattice, parent, e)) return parent;
             continue;
         }
-        uint32_t index = rgi_ref_index(ref);
+        uint32_t index = node_number(ref);
         const rgi_node *n = rgi_node_at(lattice, index);
         bool covered = rgi_cell_holds(n->centre, n->half, e->centre) && 2 * n->half >= e->least;
         if (!covered && wrap(lattice, parent, e)) continue;
@@ -600,6 +610,7 @@ static rg_result insert_entry(rgi_lattice *lattice, const entry *e) {
 rg_result rgi_lattice_insert(rgi_lattice *lattice, uint32_t slot, const rgi_bound *bound) {
     entry e;
     if (!lattice->root) make_frame(lattice, bound);
+    lattice->boxes |= !bound->ball;
     if (!make_entry(lattice, slot, bound, &e)) return insert_unbounded(lattice, slot);
     return insert_entry(lattice, &e);
 }
@@ -614,9 +625,9 @@ static uint32_t gather(rgi_lattice *lattice, uint32_t index, entry entries[FEW])
         rgi_ref next;
         for (rgi_ref ref = lane == RGI_OWN ? n->own : n->child[lane]; ref; ref = next) {
             rgi_block *b = rgi_block_at(lattice, ref);
-            for (uint32_t i = 0; i < b->count; i++) read_entry(b, rgi_ref_kind(ref), i, &entries[count++]);
+            for (uint32_t i = 0; i < b->count; i++) read_entry(b, i, &entries[count++]);
             next = b->next;
-            give(lattice, ref);
+            give(lattice, b->kind, ref);
         }
     }
     return count;
@@ -631,7 +642,7 @@ static bool merge(rgi_lattice *lattice, uint32_t index) {
     bool ball = true;
     if (!reserve_blocks(lattice, 1)) return false;
     uint32_t count = gather(lattice, index, entries);
-    give(lattice, (rgi_ref)RGI_REF_NODE << RGI_REF_BITS | index);
+    give(lattice, RGI_NODES, index << 2);
     *holder(lattice, parent) = 0;
     if (parent != RGI_ROOT) rgi_node_at(lattice, parent >> 4)->nodes--;
     empty(lo, hi);
@@ -640,8 +651,7 @@ static bool merge(rgi_lattice *lattice, uint32_t index) {
         ball &= entries[i].ball;
     }
     if (count) {
-        rgi_ref ref = take(lattice, smallest_kind(ball) + (count > 4));
-        rgi_block_at(lattice, ref)->count = 0;
+        rgi_ref ref = take(lattice, kind_for(count > RGI_SMALLEST ? 2 * RGI_SMALLEST : RGI_SMALLEST, ball));
         link_block(lattice, parent, ref);
     }
     for (uint32_t i = 0; i < count; i++) (void)add_to_chain(lattice, parent, &entries[i]);
@@ -658,9 +668,9 @@ static void skip(rgi_lattice *lattice, uint32_t index) {
     rgi_ref inner = n->child[lane];
     get_box(lattice, index << 4 | lane, lo, hi);
     *holder(lattice, parent) = inner;
-    rgi_node_at(lattice, rgi_ref_index(inner))->parent = parent;
+    rgi_node_at(lattice, node_number(inner))->parent = parent;
     set_box(lattice, parent, lo, hi);
-    give(lattice, (rgi_ref)RGI_REF_NODE << RGI_REF_BITS | index);
+    give(lattice, RGI_NODES, index << 2);
 }
 
 /* Leaves out nodes, from `parent` up, that hold too little now. */
@@ -680,18 +690,18 @@ static void clean(rgi_lattice *lattice, uint32_t parent) {
 static void remove_bounded(rgi_lattice *lattice, const rgi_location *place) {
     rgi_ref ref = place->block;
     rgi_block *b = rgi_block_at(lattice, ref);
-    uint32_t kind = rgi_ref_kind(ref), lane = place->lane, parent = b->parent;
+    uint32_t lane = place->lane, parent = b->parent;
     if (lane != --b->count) {
         entry last;
-        read_entry(b, kind, b->count, &last);
+        read_entry(b, b->count, &last);
         write_entry(lattice, ref, lane, &last);
     }
     lattice->count--;
     count_members(lattice, parent, -1);
     if (b->count == 0) {
         unlink_block(lattice, ref);
-        give(lattice, ref);
-    } else if (b->previous && b->count == rgi_block_room(kind) - 1u) {
+        give(lattice, b->kind, ref);
+    } else if (b->previous && b->count == rgi_block_room(b->kind) - 1u) {
         /* A block with room comes to the head, where it is filled again. */
         unlink_block(lattice, ref);
         link_block(lattice, parent, ref);
@@ -720,8 +730,8 @@ void rgi_lattice_remove(rgi_lattice *lattice, uint32_t slot) {
 /* A tenth beyond the wall an object still stays: on the wall it would else change cells with every step. */
 #define STAYS 1.1f
 
-static bool may_stay(const rgi_block *b, uint32_t kind, const entry *e) {
-    if (is_ball_block(kind) && !e->ball) return false;
+static bool may_stay(const rgi_block *b, const entry *e) {
+    if (is_ball_block(b->kind) && !e->ball) return false;
     if (2 * b->half < e->least) return false;
     return rgi_cell_holds(b->centre, STAYS * b->half, e->centre);
 }
@@ -729,7 +739,7 @@ static bool may_stay(const rgi_block *b, uint32_t kind, const entry *e) {
 static void stay(rgi_lattice *lattice, const rgi_location *place, const entry *e) {
     rgi_block *b = rgi_block_at(lattice, place->block);
     uint32_t parent = b->parent;
-    write_bounds(b, rgi_ref_kind(place->block), place->lane, e);
+    write_bounds(b, place->lane, e);
     grow(lattice, parent, e->lo, e->hi);
     if (b->previous) b = rgi_block_at(lattice, *holder(lattice, parent));
     loosened(lattice, parent, b);
@@ -739,6 +749,7 @@ rg_result rgi_lattice_move(rgi_lattice *lattice, uint32_t slot, const rgi_bound 
     const rgi_location place = *place_of(lattice, slot);
     entry e;
     bool bounded = make_entry(lattice, slot, bound, &e);
+    lattice->boxes |= !bound->ball;
     if (place.block == RGI_NONE) {
         if (!bounded) return RG_OK;
         /* The list keeps its memory: what is taken from it can go back, and is as right there. */
@@ -754,7 +765,7 @@ rg_result rgi_lattice_move(rgi_lattice *lattice, uint32_t slot, const rgi_bound 
         return result;
     }
     const rgi_block *b = rgi_block_at(lattice, place.block);
-    if (may_stay(b, rgi_ref_kind(place.block), &e) || !reserve_blocks(lattice, 1)) {
+    if (may_stay(b, &e) || !reserve_blocks(lattice, 1)) {
         stay(lattice, &place, &e);
         return RG_OK;
     }
@@ -777,15 +788,14 @@ void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]) {
 }
 
 uint32_t rgi_lattice_nodes(const rgi_lattice *lattice) {
-    const rgi_slots *nodes = &lattice->pools[RGI_REF_NODE];
-    return nodes->used - nodes->free_count;
+    return lattice->arena.kinds[RGI_NODES].used;
 }
 
 /* By recursion: there are no more levels than sizes of cells, some 100. */
 static uint32_t levels_below(const rgi_lattice *lattice, rgi_ref ref) {
     uint32_t deepest = 0;
-    if (!is_node(ref)) return 0;
-    const rgi_node *n = rgi_node_at(lattice, rgi_ref_index(ref));
+    if (!rgi_is_node(ref)) return 0;
+    const rgi_node *n = rgi_node_at(lattice, node_number(ref));
     for (int i = 0; i < RGI_OCTANTS; i++) {
         uint32_t levels = levels_below(lattice, n->child[i]);
         if (levels > deepest) deepest = levels;
@@ -804,17 +814,12 @@ void rgi_lattice_init(rgi_lattice *lattice, rgi_memory *memory, rgi_slots *objec
     lattice->memory = memory;
     lattice->objects = objects;
     lattice->place_offset = place_offset;
-    rgi_slots_init(&lattice->pools[RGI_REF_NODE], memory, sizeof(rgi_node), "nodes of a grid");
-    for (uint32_t kind = RGI_REF_BALLS; kind < RGI_POOLS; kind++) {
-        size_t lane = (kind >= RGI_REF_BOXES ? 6 : 4) * sizeof(float) + sizeof(uint32_t);
-        rgi_slots_init(&lattice->pools[kind], memory, sizeof(rgi_block) + lane * rgi_block_room(kind),
-                       "blocks of a grid");
-    }
+    rgi_arena_init(&lattice->arena, memory);
     empty(lattice->lo, lattice->hi);
     lattice->scale = 1;
 }
 
 void rgi_lattice_free(rgi_lattice *lattice) {
-    for (uint32_t kind = RGI_REF_NODE; kind < RGI_POOLS; kind++) rgi_slots_free(&lattice->pools[kind]);
+    rgi_arena_free(&lattice->arena);
     rgi_release(lattice->memory, lattice->unbounded, lattice->unbounded_room, sizeof *lattice->unbounded);
 }

@@ -15,28 +15,30 @@
 #ifndef RAYGRID_LIB_LATTICE_H
 #define RAYGRID_LIB_LATTICE_H
 
+#include "chunks.h"
 #include "slots.h"
 
 #include <stdbool.h>
 
-/** A reference to a node or a block: 0 is none, else a kind in the upper 3 bits and the index of a record. */
+/** A reference to a node or a block in the arena: 0 is none; the highest bit is set for blocks. See rgi_arena. */
 typedef uint32_t rgi_ref;
 
 enum {
-    RGI_REF_BITS = 29,
-    RGI_REF_NODE = 1,
-    RGI_REF_BALLS = 2, /* blocks with room for 4, 8 and 16 balls: kinds 2, 3 and 4 */
-    RGI_REF_BOXES = 5, /* and for boxes: kinds 5, 6 and 7 */
-    RGI_POOLS = 8,
+    /* Kinds of records: nodes, whose references alone have not the highest bit; blocks with room for 4, 8 and 16
+     * balls: 4, 8 and 16; and for boxes: 5, 9 and 17. */
+    RGI_NODES = 0,
+    RGI_SMALLEST = 4,
+    RGI_BOXES = 1,
+    RGI_KINDS = 18,
     RGI_BLOCK = 16, /* objects of the largest block */
     RGI_OCTANTS = 8
 };
 
-static inline uint32_t rgi_ref_kind(rgi_ref ref) {
-    return ref >> RGI_REF_BITS;
+static inline bool rgi_is_block(rgi_ref ref) {
+    return ref >> 31;
 }
-static inline uint32_t rgi_ref_index(rgi_ref ref) {
-    return ref & ((1u << RGI_REF_BITS) - 1);
+static inline bool rgi_is_node(rgi_ref ref) {
+    return ref && !rgi_is_block(ref);
 }
 
 /** A node. Its children's boxes; an octant without a child has lo = +infinity, hi = -infinity. */
@@ -45,26 +47,29 @@ typedef struct rgi_node {
     rgi_ref child[RGI_OCTANTS];
     float centre[3], half; /* its cell: so far to each side of the centre */
     rgi_ref own;           /* chain of what is too large for its octants */
-    uint32_t parent;       /* its node * 16 + its octant there, or RGI_ROOT */
+    uint32_t parent;       /* the number of its node * 16 + its octant there, or RGI_ROOT */
     uint32_t members;      /* objects in its own chain and in children that are leaves */
     uint8_t nodes;         /* children that are nodes */
     uint8_t stale;         /* changes of children's boxes since its own was made tight */
     uint16_t spare;
 } rgi_node;
 
-/** A block: this head, then for each of `room` objects the floats x, y, z, r or lo[3], hi[3], each as an array, and
- *  the slots of the objects. The first `count` are in use. */
+/**
+ * A block: this head, the slots of up to `room` objects, and from rgi_block_lanes on x, y, z, r or lo[3], hi[3] of
+ * each, every one an array. The first `count` are in use. All is so aligned that no vector lies across cache lines.
+ */
 typedef struct rgi_block {
     rgi_ref next, previous; /* of the chain */
-    uint32_t parent;        /* node * 16 + octant, RGI_OWN for its own chain; or RGI_ROOT */
+    uint32_t parent;        /* node number * 16 + octant, RGI_OWN for its own chain; or RGI_ROOT */
+    uint8_t kind;
     uint8_t count;
     uint8_t stale;         /* first of a chain: changes since the box around it was made tight */
-    uint16_t length;       /* first of a chain: its blocks, RGI_LONG for that many and more */
+    uint8_t length;        /* first of a chain: its blocks, RGI_LONG for that many and more */
     float centre[3], half; /* the cell; half is infinite for the root */
-    float lanes[];
+    uint32_t slots[];
 } rgi_block;
 
-enum { RGI_LONG = UINT16_MAX };
+enum { RGI_LONG = UINT8_MAX };
 
 #define RGI_ROOT UINT32_MAX
 enum { RGI_OWN = 8 };
@@ -82,15 +87,46 @@ typedef struct rgi_bound {
     double lo[3], hi[3];
 } rgi_bound;
 
+/**
+ * Records of several sizes in chunks that never move. A reference has the number of a chunk and the cache line in
+ * it. Nodes take 4 lines, so the last two bits of theirs are 0: what is left is the node's number.
+ */
+typedef struct rgi_arena {
+    rgi_chunks chunks;
+    struct {
+        rgi_ref first;  /* of the list of free records */
+        uint32_t count; /* of free records */
+        uint32_t used;
+    } kinds[RGI_KINDS];
+} rgi_arena;
+
+enum { RGI_LINE = 64, RGI_LINE_BITS = 8, RGI_CHUNK_NUMBER_BITS = 21 };
+
+static inline void *rgi_arena_at(const rgi_arena *arena, rgi_ref ref) {
+    return arena->chunks.at[ref >> RGI_LINE_BITS & ((1u << RGI_CHUNK_NUMBER_BITS) - 1)] +
+           (size_t)(ref & ((1u << RGI_LINE_BITS) - 1)) * RGI_LINE;
+}
+
+void rgi_arena_init(rgi_arena *arena, rgi_memory *memory);
+void rgi_arena_free(rgi_arena *arena);
+
+/** Makes sure that the next `count` records of a kind can be taken. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED. */
+rg_result rgi_arena_reserve(rgi_arena *arena, uint32_t kind, uint32_t count);
+
+/** Takes a record that was reserved, not cleared; gives one back: its first 4 bytes are the list's then. */
+rgi_ref rgi_arena_take(rgi_arena *arena, uint32_t kind);
+void rgi_arena_give(rgi_arena *arena, uint32_t kind, rgi_ref ref);
+
 typedef struct rgi_lattice {
     rgi_memory *memory;
     rgi_slots *objects;  /* records that start with an rgi_location */
     size_t place_offset; /* of the place in such a record */
-    rgi_slots pools[RGI_POOLS];
+    rgi_arena arena;
     rgi_ref root;
     float lo[3], hi[3]; /* holds all that is below the root */
     double origin[3], scale;
     uint64_t count;      /* objects below the root */
+    bool boxes;          /* there have been others than balls */
     uint32_t *unbounded; /* slots of what no float can hold */
     uint32_t unbounded_count;
     uint64_t unbounded_room;
@@ -123,21 +159,23 @@ void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]);
 uint32_t rgi_lattice_levels(const rgi_lattice *lattice);
 uint32_t rgi_lattice_nodes(const rgi_lattice *lattice);
 
-static inline rgi_node *rgi_node_at(const rgi_lattice *lattice, uint32_t index) {
-    return rgi_slots_at(&lattice->pools[RGI_REF_NODE], index);
+/** A node by its number. */
+static inline rgi_node *rgi_node_at(const rgi_lattice *lattice, uint32_t number) {
+    return rgi_arena_at(&lattice->arena, number << 2);
 }
 
 static inline rgi_block *rgi_block_at(const rgi_lattice *lattice, rgi_ref ref) {
-    return rgi_slots_at(&lattice->pools[rgi_ref_kind(ref)], rgi_ref_index(ref));
+    return rgi_arena_at(&lattice->arena, ref);
 }
 
 /** Objects that a block of this kind has room for: 4, 8 or 16. */
 static inline uint32_t rgi_block_room(uint32_t kind) {
-    return 4u << (kind - (kind >= RGI_REF_BOXES ? RGI_REF_BOXES : RGI_REF_BALLS));
+    return kind & ~(uint32_t)RGI_BOXES;
 }
 
-static inline uint32_t *rgi_block_slots(rgi_block *block, uint32_t kind) {
-    return (uint32_t *)(block->lanes + (kind >= RGI_REF_BOXES ? 6 : 4) * rgi_block_room(kind));
+/** Where the arrays begin: at the first line that the slots leave free. */
+static inline float *rgi_block_lanes(const rgi_block *block, uint32_t room) {
+    return (float *)((char *)block + RGI_LINE + (room / RGI_BLOCK) * RGI_LINE);
 }
 
 #endif

@@ -1,19 +1,28 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE /* madvise */
 #include "memory.h"
 
 #include "error.h"
 
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* A cache line: no two blocks share one, and any SIMD load is aligned. */
 enum { ALIGNMENT = 64 };
 
+/* Large blocks are put on huge pages where the system has them to give: a wish, whose failure changes nothing. */
 static void *default_allocate(void *user, size_t size, size_t alignment) {
     void *block;
+    bool large = size > RGI_HUGE_PAGE / 2;
     (void)user;
-    return posix_memalign(&block, alignment, size) == 0 ? block : NULL;
+    if (posix_memalign(&block, large ? RGI_HUGE_PAGE : alignment, size) != 0) return NULL;
+#ifdef MADV_HUGEPAGE
+    if (large) (void)madvise(block, size, MADV_HUGEPAGE);
+#endif
+    return block;
 }
 
 static void default_release(void *user, void *block, size_t size, size_t alignment) {

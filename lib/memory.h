@@ -5,6 +5,9 @@
 
 #include <raygrid/base.h>
 
+/** Bytes of what systems call a huge page. */
+enum { RGI_HUGE_PAGE = 1 << 21 };
+
 typedef struct rgi_memory {
     rg_allocator allocator;
     uint64_t bytes; /* held now; read and written atomically */

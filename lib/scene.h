@@ -37,6 +37,7 @@ struct rg_scene {
     rgi_grid_place grids[RGI_GRIDS];
     uint32_t grid_places; /* all below were used */
     uint32_t grid_count;
+    bool masked;           /* there has been an object that some rays do not see */
     uint64_t invalid_rays; /* atomic */
 };
 

@@ -115,6 +115,7 @@ rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *p,
     object->shape = shape;
     object->linear = RGI_NONE;
     object->mask = mask;
+    scene->masked |= mask != UINT32_MAX;
     object->grid = grid;
     rgi_set_pose(scene, object, p);
     scene->object_count++;
@@ -195,7 +196,10 @@ rg_result rg_scene_set_mask(rg_scene *scene, rg_object id, uint32_t mask) {
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_find_object(scene, id, &slot);
-    if (!result) rgi_scene_object(scene, slot)->mask = mask;
+    if (!result) {
+        rgi_scene_object(scene, slot)->mask = mask;
+        scene->masked |= mask != UINT32_MAX;
+    }
     return rgi_scene_end_change(scene, &frame, result);
 }
 

@@ -284,4 +284,43 @@ RGI_INLINE f16 f16_pick(uint32_t bits, f16 a, f16 b) {
 RGI_WIDE(f16, 16)
 #endif
 
+/* The largest lane. */
+RGI_INLINE float f16_most(f16 a) {
+    float v[16], most;
+    f16_store(v, a);
+    most = v[0];
+    for (int i = 1; i < 16; i++) most = v[i] > most ? v[i] : most;
+    return most;
+}
+
+/**
+ * Puts the lanes of t that `bits` names, and the numbers beside them, to the end of two arrays, in the order
+ * order[0], order[1], ...; returns how many. Up to 8 elements behind the last are overwritten.
+ */
+RGI_INLINE uint32_t f8_keep(uint32_t bits, const uint32_t order[8], f8 t, const uint32_t numbers[8], float *ts,
+                            uint32_t *kept) {
+#if RGI_ISA == RGI_ISA_AVX512
+    __m256i by = _mm256_loadu_si256((const __m256i *)order);
+    /* Bit i of `bits` to the place where order has i. */
+    __mmask8 mask = _mm256_test_epi32_mask(_mm256_sllv_epi32(_mm256_set1_epi32(1), by), _mm256_set1_epi32((int)bits));
+    __m256 tp = _mm256_maskz_compress_ps(mask, _mm256_permutexvar_ps(by, t.v[0]));
+    __m256i np =
+        _mm256_maskz_compress_epi32(mask, _mm256_permutexvar_epi32(by, _mm256_load_si256((const __m256i *)numbers)));
+    _mm256_storeu_ps(ts, tp);
+    _mm256_storeu_si256((__m256i *)kept, np);
+    return (uint32_t)__builtin_popcount(bits);
+#else
+    uint32_t count = 0;
+    float at[8];
+    f8_store(at, t);
+    for (int i = 0; i < 8; i++) {
+        uint32_t lane = order[i];
+        ts[count] = at[lane];
+        kept[count] = numbers[lane];
+        count += bits >> lane & 1;
+    }
+    return count;
+#endif
+}
+
 #endif

@@ -6,7 +6,7 @@
 #ifndef RAYGRID_LIB_SLOTS_H
 #define RAYGRID_LIB_SLOTS_H
 
-#include "memory.h"
+#include "chunks.h"
 
 #include <stdint.h>
 
@@ -16,19 +16,13 @@ enum { RGI_CHUNK_BITS = 10, RGI_CHUNK = 1 << RGI_CHUNK_BITS };
 #define RGI_NONE UINT32_MAX
 
 typedef struct rgi_slots {
-    rgi_memory *memory;
-    char **chunks;
-    uint32_t chunk_count;
-    uint32_t chunk_room;  /* pointers that `chunks` has room for */
+    rgi_chunks chunks;
     uint32_t record_size; /* bytes */
     uint32_t used;        /* records that were ever taken: all indices are below */
     uint32_t free_first;  /* head of the list of the free */
     uint32_t free_count;
     const char *purpose; /* for messages */
 } rgi_slots;
-
-/** Bytes that may be read, but not written, behind the last record of a chunk: kernels load whole vectors. */
-enum { RGI_SLACK = 64 };
 
 void rgi_slots_init(rgi_slots *slots, rgi_memory *memory, size_t record_size, const char *purpose);
 void rgi_slots_free(rgi_slots *slots);
@@ -41,7 +35,7 @@ void rgi_slots_free(rgi_slots *slots);
 rg_result rgi_slots_reserve(rgi_slots *slots, uint64_t count);
 
 static inline void *rgi_slots_at(const rgi_slots *slots, uint32_t index) {
-    return slots->chunks[index >> RGI_CHUNK_BITS] + (size_t)(index & (RGI_CHUNK - 1)) * slots->record_size;
+    return slots->chunks.at[index >> RGI_CHUNK_BITS] + (size_t)(index & (RGI_CHUNK - 1)) * slots->record_size;
 }
 
 /** The index that rgi_slots_take would return next. */

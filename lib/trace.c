@@ -17,6 +17,7 @@
 
 enum {
     RAYS_PER_TILE = 256, /* what a worker takes at a time */
+    MIN_PACKET = 4,      /* fewer rays are better off on their own */
     CONFIG_LEAST = sizeof(rg_trace_config),
     RAYS_LEAST = sizeof(rg_ray_views),
     HITS_LEAST = sizeof(rg_hit_views)
@@ -193,10 +194,40 @@ static bool visit_unbounded(query *q, const rgi_lattice *lattice) {
     return q->done;
 }
 
+/* What a kernel asks for a ray of a packet. */
+static bool ask_of_packet(rgi_packet *packet, uint32_t ray, uint32_t slot) {
+    query *q = packet->queries[ray];
+    q->done = visit(q, slot);
+    if (!q->found) return q->done;
+    packet->t_hi[ray] = rgi_beam_above(&packet->scale[ray], packet->pad[ray], q->walk.t_max);
+    packet->t_lo[ray] = rgi_beam_below(&packet->scale[ray], packet->pad[ray], q->walk.t_max);
+    return q->done;
+}
+
+/* Takes rays that go the same way through a lattice; false if these do not. */
+static bool through_together(const call *c, const rgi_beam *beams, uint32_t count, const rgi_lattice *lattice) {
+    rgi_packet packet;
+    if (c->hits.cells.data || c->hits.tests.data || !rgi_packet_init(&packet, beams, count, lattice)) return false;
+    packet.any = c->any;
+    packet.ask_all = c->config.filter || c->config.cull != RG_CULL_NONE || c->scene->masked;
+    packet.ask = ask_of_packet;
+    for (uint32_t i = 0; i < count; i++) {
+        query *q = packet.queries[i] = beams[i].query;
+        packet.ask_all |= q->ray.mask == 0;
+    }
+    c->scene->kernels->trace_packet(lattice, &packet);
+    for (uint32_t rays = packet.any ? packet.certain : 0; rays; rays &= rays - 1) {
+        query *q = packet.queries[__builtin_ctz(rays)];
+        q->found = q->done = true;
+    }
+    return true;
+}
+
 /* Takes rays through a lattice, one or several side by side. */
-static void through_lattice(query *queries, uint32_t count, const rgi_lattice *lattice, const rgi_kernels *kernels) {
+static void through_lattice(query *queries, uint32_t count, const rgi_lattice *lattice) {
     rgi_beam beams[RGI_PACKET];
     uint32_t used = 0;
+    const call *c = queries->call;
     for (uint32_t i = 0; i < count; i++) {
         query *q = &queries[i];
         rgi_beam *beam = &beams[used];
@@ -206,10 +237,11 @@ static void through_lattice(query *queries, uint32_t count, const rgi_lattice *l
         beam->query = q;
         used++;
     }
+    if (used > MIN_PACKET && through_together(c, beams, used, lattice)) return;
     if (used == 1)
-        kernels->trace_one(lattice, &beams[0]);
+        c->scene->kernels->trace_one(lattice, &beams[0]);
     else if (used)
-        kernels->trace_some(lattice, beams, used);
+        c->scene->kernels->trace_some(lattice, beams, used);
     for (uint32_t i = 0; i < used; i++) ((query *)beams[i].query)->walk.cells += beams[i].nodes;
 }
 
@@ -229,7 +261,7 @@ static void through_grids(query *queries, uint32_t count) {
         const rgi_any_grid *store = scene->grids[g].grid;
         if (!store || !store->count) continue;
         if (rgi_any_grid_is_loose(store)) {
-            through_lattice(queries, count, &store->lattice, scene->kernels);
+            through_lattice(queries, count, &store->lattice);
             continue;
         }
         for (uint32_t i = 0; i < count; i++) {

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+#include "chunks.h"
+
+#include <string.h>
+
+void rgi_chunks_init(rgi_chunks *chunks, rgi_memory *memory, uint32_t bytes) {
+    memset(chunks, 0, sizeof *chunks);
+    chunks->memory = memory;
+    chunks->bytes = bytes;
+}
+
+/* Chunks of the slab that begins with chunk `first`: one, or what fits in a huge page once there are as many already. */
+static uint32_t slab_length(const rgi_chunks *chunks, uint32_t first) {
+    uint32_t many = (RGI_HUGE_PAGE - RGI_SLACK) / chunks->bytes;
+    return first >= many && many > 1 ? many : 1;
+}
+
+static size_t slab_bytes(const rgi_chunks *chunks, uint32_t first) {
+    return (size_t)slab_length(chunks, first) * chunks->bytes + RGI_SLACK;
+}
+
+void rgi_chunks_free(rgi_chunks *chunks) {
+    for (uint32_t first = 0; first < chunks->count; first += slab_length(chunks, first))
+        rgi_release(chunks->memory, chunks->at[first], 1, slab_bytes(chunks, first));
+    rgi_release(chunks->memory, chunks->at, chunks->room, sizeof *chunks->at);
+    rgi_chunks_init(chunks, chunks->memory, chunks->bytes);
+}
+
+static rg_result make_room_for_pointer(rgi_chunks *chunks, const char *purpose) {
+    if (chunks->count < chunks->room) return RG_OK;
+    uint32_t room = chunks->room ? chunks->room * 2 : 4;
+    char **at;
+    rg_result result = rgi_allocate(chunks->memory, room, sizeof *at, purpose, &at);
+    if (result) return result;
+    if (chunks->count) memcpy(at, chunks->at, chunks->count * sizeof *at);
+    rgi_release(chunks->memory, chunks->at, chunks->room, sizeof *at);
+    chunks->at = at;
+    chunks->room = room;
+    return RG_OK;
+}
+
+rg_result rgi_chunks_add(rgi_chunks *chunks, const char *purpose) {
+    uint32_t number = chunks->count;
+    rg_result result = make_room_for_pointer(chunks, purpose);
+    if (result) return result;
+    if (number > 0 && number < chunks->slab + slab_length(chunks, chunks->slab)) {
+        chunks->at[number] = chunks->at[chunks->slab] + (size_t)(number - chunks->slab) * chunks->bytes;
+    } else {
+        result = rgi_allocate(chunks->memory, 1, slab_bytes(chunks, number), purpose, &chunks->at[number]);
+        if (result) return result;
+        chunks->slab = number;
+    }
+    chunks->count++;
+    return RG_OK;
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Chunks of memory of one size, by number, whose addresses never change. Few chunks are allocated one by one; once they
+ * are many, in slabs of a huge page each, so that a large scene costs few misses of the processor's address tables.
+ */
+#ifndef RAYGRID_LIB_CHUNKS_H
+#define RAYGRID_LIB_CHUNKS_H
+
+#include "memory.h"
+
+typedef struct rgi_chunks {
+    rgi_memory *memory;
+    char **at;
+    uint32_t count;
+    uint32_t room;  /* pointers that `at` has room for */
+    uint32_t slab;  /* number of the first chunk of the last slab */
+    uint32_t bytes; /* of a chunk */
+} rgi_chunks;
+
+/** Bytes that may be read, but not written, behind a chunk: kernels load whole vectors. */
+enum { RGI_SLACK = 64 };
+
+void rgi_chunks_init(rgi_chunks *chunks, rgi_memory *memory, uint32_t bytes);
+void rgi_chunks_free(rgi_chunks *chunks);
+
+/** Adds a chunk, not cleared. RG_OUT_OF_MEMORY: nothing has changed. */
+rg_result rgi_chunks_add(rgi_chunks *chunks, const char *purpose);
+
+#endif
