@@ -9,13 +9,26 @@
 #ifndef RAYGRID_LIB_BEAM_H
 #define RAYGRID_LIB_BEAM_H
 
+#include "bundle.h"
 #include "lattice.h"
 #include "object.h"
 
-enum {
-    RGI_PACKET = 16,
-    RGI_STACK = 256 /* of a beam; what goes deeper is walked by recursion */
-};
+/** Entries of a beam's stack; what goes deeper is walked by recursion. */
+enum { RGI_STACK = 256 };
+
+/**
+ * From farther than this many radii of all that is stored, the origin is first moved along the ray to where it comes
+ * near, so many radii before the middle, in front of everything: floats then have their bits where they are needed.
+ */
+#define RGI_FAR 8
+#define RGI_BEFORE 4
+
+/** A component of the direction below this is taken for it; the planes across it then count as met so much earlier
+ * and later as a ray can take to pass all that is stored. */
+#define RGI_FLAT 0x1p-60
+
+/** Beyond it all bounds of t are the same; products and sums of them stay finite. */
+#define RGI_T_MOST 0x1p90
 
 /** Where the frame's t is zero, and how it grows with the ray's. */
 typedef struct rgi_beam_scale {
@@ -33,7 +46,7 @@ typedef struct rgi_beam {
     float inverse[3], near[3], far[3];
     float pad; /* what the rounding of origin and direction can do to a ball */
     float t_min, t_max;
-    uint32_t negative; /* bits of the axes along which it runs down: the order of octants */
+    uint32_t negative;            /* bits of the axes along which it runs down: the order of octants */
     uint32_t towards[3], away[3]; /* where a node keeps the planes that the ray meets first and last, in floats */
     rgi_beam_scale scale;
     /** Intersects the object with the ray in double; may lower t_max. Returns true to end. */
@@ -61,35 +74,35 @@ bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_ray *ra
  * overlap, or where a hit is not certain, both are asked.
  */
 typedef struct rgi_packet {
-    float origin[3][RGI_PACKET], direction[3][RGI_PACKET];
+    float origin[3][RGI_PACKET] __attribute__((aligned(64))), direction[3][RGI_PACKET];
     float inverse[3][RGI_PACKET], near[3][RGI_PACKET], far[3][RGI_PACKET];
     float pad[RGI_PACKET];
-    float t_min[RGI_PACKET]; /* a bound from above: what is beyond is in range */
+    float t_min[RGI_PACKET];   /* a bound from above: what is beyond is in range */
     float t_first[RGI_PACKET]; /* and from below */
     float t_lo[RGI_PACKET], t_hi[RGI_PACKET];
-    float best[RGI_PACKET];  /* slots, as bits, of the hits that are certain but not asked yet */
-    uint32_t certain;        /* bits of the rays that have one */
-    uint32_t active;         /* bits of the rays that are still on their way */
-    bool any;                /* the first hit ends a ray */
-    bool ask_all;            /* nothing is certain before it was asked */
-    rgi_beam_scale scale[RGI_PACKET];
+    float best[RGI_PACKET];                       /* slots, as bits, of the hits that are certain but not asked yet */
+    uint32_t certain;                             /* bits of the rays that have one */
+    uint32_t active;                              /* bits of the rays that are still on their way */
+    bool any;                                     /* the first hit ends a ray */
+    bool ask_all;                                 /* nothing is certain before it was asked */
+    double shift[RGI_PACKET], length[RGI_PACKET]; /* see rgi_beam_scale */
     /** As rgi_beam; gives the bounds of the nearest hit so far, in the frame. Returns true to end the ray. */
     bool (*ask)(struct rgi_packet *packet, uint32_t ray, uint32_t slot);
-    void *queries[RGI_PACKET];
+    void *context;
     uint32_t visits;
     /* the planes: x[across] - slope * x[axis], for rays between lo and hi */
     uint32_t axis, across[2];
     bool down; /* they run along the axis from high to low */
     float slope_lo[2], slope_hi[2], lo[2], hi[2];
-    float norm_lo[2], norm_hi[2]; /* of the planes' normals */
+    float norm_lo[2], norm_hi[2];  /* of the planes' normals */
     float start_first, start_last; /* along the axis: the origins lie between; first in the sense of the rays */
     float stretch;                 /* t is at least so many times the way along the axis */
     float pad_most;
     uint32_t negative;
 } rgi_packet;
 
-/** Fills the packet from beams that were made, if they go the same way; false if not. Fills not: ask, queries. */
-bool rgi_packet_init(rgi_packet *packet, const rgi_beam *beams, uint32_t count, const rgi_lattice *lattice);
+/** One ray of a packet on its own; ask and query are left. */
+void rgi_beam_of_packet(rgi_beam *beam, const rgi_packet *packet, uint32_t ray, const rgi_lattice *lattice);
 
 /** A bound from above for a t of the ray, in the frame. */
 float rgi_beam_above(const rgi_beam_scale *scale, float pad, double t);
@@ -98,11 +111,19 @@ float rgi_beam_below(const rgi_beam_scale *scale, float pad, double t);
 /** The kernels of one instruction set. */
 typedef struct rgi_kernels {
     const char *name;
+    /** Scales the rays as rgi_ray_init; false if one is invalid, or extreme: then they are to be taken one by one. */
+    bool (*prepare)(rgi_bundle *bundle);
+    /** Brings prepared rays into the frame of a lattice. */
+    void (*to_frame)(const rgi_bundle *bundle, const rgi_lattice *lattice, rgi_packet *packet);
+    /** Whether the rays of a packet go the same way; then sets the planes that bound them. */
+    bool (*bound)(rgi_packet *packet, const rgi_lattice *lattice);
+    /** Where the rays meet balls, to the same bits as rgi_object_intersect. */
+    void (*meet)(const rgi_bundle *bundle, rgi_meeting *meeting);
     /** Takes one ray through the lattice. */
     void (*trace_one)(const rgi_lattice *lattice, rgi_beam *beam);
     /** Takes up to RGI_PACKET rays through side by side, each on its own way, so that waits for memory overlap. */
     void (*trace_some)(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count);
-    /** Takes a packet through. At its end all that was certain has been asked, unless any hit will do. */
+    /** Takes a packet through. What is certain at its end has not been asked. */
     void (*trace_packet)(const rgi_lattice *lattice, rgi_packet *packet);
 } rgi_kernels;
 

@@ -9,7 +9,8 @@ void rgi_chunks_init(rgi_chunks *chunks, rgi_memory *memory, uint32_t bytes) {
     chunks->bytes = bytes;
 }
 
-/* Chunks of the slab that begins with chunk `first`: one, or what fits in a huge page once there are as many already. */
+/* Chunks of the slab that begins with chunk `first`: one, or what fits in a huge page once there are as many already.
+ */
 static uint32_t slab_length(const rgi_chunks *chunks, uint32_t first) {
     uint32_t many = (RGI_HUGE_PAGE - RGI_SLACK) / chunks->bytes;
     return first >= many && many > 1 ? many : 1;

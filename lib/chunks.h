@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Chunks of memory of one size, by number, whose addresses never change. Few chunks are allocated one by one; once they
- * are many, in slabs of a huge page each, so that a large scene costs few misses of the processor's address tables.
+ * Chunks of memory of one size, by number, whose addresses never change. Few chunks are allocated one by one; once
+ * they are many, in slabs of a huge page each, so that a large scene costs few misses of the processor's address
+ * tables.
  */
 #ifndef RAYGRID_LIB_CHUNKS_H
 #define RAYGRID_LIB_CHUNKS_H

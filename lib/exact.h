@@ -24,13 +24,20 @@ static inline void rgi_split(double a, double *high, double *low) {
     *low = a - *high;
 }
 
-/** Returns the rounded a * b; *error is what rounding lost, exactly unless it is denormal. */
+/** Returns the rounded a * b; *error is what rounding lost, exactly unless it is denormal: the same bits with or
+ * without a fused multiply-add. */
 static inline double rgi_two_product(double a, double b, double *error) {
+#ifdef __FMA__
+    double p = a * b;
+    *error = __builtin_fma(a, b, -p);
+    return p;
+#else
     double p = a * b, ah, al, bh, bl;
     rgi_split(a, &ah, &al);
     rgi_split(b, &bh, &bl);
     *error = ((ah * bh - p) + ah * bl + al * bh) + al * bl;
     return p;
+#endif
 }
 
 /**

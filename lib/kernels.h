@@ -8,6 +8,11 @@
 #include "beam.h"
 #include "simd.h"
 
+#include <float.h>
+#include <raygrid/shape.h>
+
+#include "kernels_bundle.h"
+
 #define RGI_PASTE2(a, b) a##b
 #define RGI_PASTE(a, b) RGI_PASTE2(a, b)
 #define RGI_TEXT2(a) #a
@@ -267,6 +272,61 @@ static void settle_all(rgi_packet *p, uint32_t rays, uint32_t slot) {
     for (; rays; rays &= rays - 1) settle(p, (uint32_t)__builtin_ctz(rays), slot);
 }
 
+/* Slopes against the axis may differ by this much, and the planes that bound the rays be so far apart, in radii of
+ * all that is stored: beyond it what is passed over for one ray hardly ever is for all. */
+#define SLOPES 0.15f
+#define APART 0.1f
+
+/* Slopes are widened by what rounding a direction and its inverse can change of them. */
+#define SLOPE_PAD 0x1p-20f
+
+/* The two planes across one axis. */
+RGI_INLINE bool bound_slopes(rgi_packet *p, uint32_t which, f16 per_way, f16 pad, float radius) {
+    const uint32_t a = p->across[which], k = p->axis;
+    /* Per length of way along the axis, whichever its sense. */
+    f16 slopes = f16_mul(f16_load(p->direction[a]), per_way);
+    float least = f16_least(slopes), most = f16_most(slopes), sense = p->down ? -1.0f : 1.0f;
+    if (!(most - least <= SLOPES)) return false;
+    least -= SLOPE_PAD * (1 + fabsf(least));
+    most += SLOPE_PAD * (1 + fabsf(most));
+    p->slope_lo[which] = sense * least;
+    p->slope_hi[which] = sense * most;
+    f16 o = f16_load(p->origin[a]), along = f16_load(p->origin[k]);
+    p->lo[which] = f16_least(f16_sub(f16_fma(f16_set(-p->slope_lo[which]), along, o), pad));
+    p->hi[which] = f16_most(f16_add(f16_fma(f16_set(-p->slope_hi[which]), along, o), pad));
+    p->norm_lo[which] = (1 + 0x1p-20f) * sqrtf(1 + least * least);
+    p->norm_hi[which] = (1 + 0x1p-20f) * sqrtf(1 + most * most);
+    return p->hi[which] - p->lo[which] <= APART * radius;
+}
+
+static bool bound(rgi_packet *p, const rgi_lattice *lattice) {
+    float d[3] = {fabsf(p->direction[0][0]), fabsf(p->direction[1][0]), fabsf(p->direction[2][0])};
+    double centre[3];
+    p->axis = d[1] > d[0] ? 1 : 0;
+    if (d[2] > d[p->axis]) p->axis = 2;
+    p->across[0] = (p->axis + 1) % 3;
+    p->across[1] = (p->axis + 2) % 3;
+    p->down = p->inverse[p->axis][0] < 0;
+    p->negative = 0;
+    for (uint32_t a = 0; a < 3; a++) p->negative |= (uint32_t)(p->inverse[a][0] < 0) << a;
+    /* All in one sense, and not too steeply across it. */
+    f16 way = f16_mul(f16_load(p->direction[p->axis]), f16_set(p->down ? -1.0f : 1.0f));
+    f16 pad = f16_mul(f16_load(p->pad), f16_set(4));
+    if (f16_least(way) < 0.25f) return false;
+    /* What lies behind an origin is out of the planes. */
+    f16 first = f16_load(p->t_first), behind = f16_sub(f16_set(0), f16_fma(pad, f16_set(4), f16_set(0x1p-60f)));
+    if (f16_le(first, behind)) return false;
+    f16 per_way = f16_mul(f16_load(p->inverse[p->axis]), f16_set(p->down ? -1.0f : 1.0f));
+    float radius = (float)(rgi_lattice_middle(lattice, centre) * lattice->scale);
+    if (!bound_slopes(p, 0, per_way, pad, radius) || !bound_slopes(p, 1, per_way, pad, radius)) return false;
+    f16 start = f16_mul(f16_load(p->origin[p->axis]), f16_set(p->down ? -1.0f : 1.0f));
+    p->start_first = f16_least(f16_sub(start, pad));
+    p->start_last = f16_most(f16_add(start, pad));
+    p->stretch = 1 - 0x1p-18f;
+    p->pad_most = f16_most(f16_load(p->pad));
+    return true;
+}
+
 /* One ball, all rays. Returns whether t_hi of some ray may have changed. */
 RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_t slot) {
     f16 to[3], along = f16_set(0), square = f16_set(0), pad = f16_load(p->pad);
@@ -380,12 +440,7 @@ static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
             s.ts[s.depth++] = t;
         }
     }
-    if (p->any) return;
-    for (uint32_t rays = p->certain; rays; rays &= rays - 1) {
-        uint32_t ray = (uint32_t)__builtin_ctz(rays), best;
-        memcpy(&best, &p->best[ray], sizeof best);
-        (void)p->ask(p, ray, best);
-    }
 }
 
-const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), trace_one, trace_some, trace_packet};
+const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), prepare,    to_frame,    bound, meet,
+                                                       trace_one,          trace_some, trace_packet};

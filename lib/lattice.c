@@ -780,6 +780,15 @@ bool rgi_lattice_has_cell(const rgi_lattice *lattice, const rgi_bound *bound) {
     return make_entry(lattice, 0, bound, &e);
 }
 
+double rgi_lattice_middle(const rgi_lattice *lattice, double centre[3]) {
+    double half[3];
+    for (int a = 0; a < 3; a++) {
+        centre[a] = 0.5 * ((double)lattice->lo[a] + lattice->hi[a]) / lattice->scale;
+        half[a] = 0.5 * ((double)lattice->hi[a] - lattice->lo[a]) / lattice->scale;
+    }
+    return sqrt(rgi_dot(half, half));
+}
+
 void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]) {
     for (int a = 0; a < 3; a++) {
         lo[a] = lattice->origin[a] + (double)lattice->lo[a] / lattice->scale;

@@ -15,10 +15,6 @@ static double power_of_two(int e) {
     return value;
 }
 
-/* Farther along the ray than any object reaches but infinite boxes (raygrid/shape.h, RG_COORDINATE_MAX): so positions
- * of hits stay far from overflow. */
-#define FARTHEST 0x1p340
-
 /*
  * A limit of t in scaled units. What underflows keeps its sign: t = 0 is out of the range of a ray that starts at the
  * smallest t above it. The caller has clipped it to where t in its own units is a double: a hit must not look like a
@@ -46,19 +42,12 @@ bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3
         ray->origin[i] = origin[i];
         ray->direction[i] = direction[i] * ray->to_world * ray->to_world2;
     }
-    ray->t_min = rgi_max(scaled_limit(rgi_max(t_min, -DBL_MAX), from_world, from_world2), -FARTHEST);
-    ray->t_max = rgi_min(scaled_limit(rgi_min(t_max, DBL_MAX), from_world, from_world2), FARTHEST);
+    ray->t_min = rgi_max(scaled_limit(rgi_max(t_min, -DBL_MAX), from_world, from_world2), -RGI_FARTHEST);
+    ray->t_max = rgi_min(scaled_limit(rgi_min(t_max, DBL_MAX), from_world, from_world2), RGI_FARTHEST);
     ray->dd = rgi_dot(ray->direction, ray->direction);
     ray->mask = mask;
     return true;
 }
-
-/*
- * Beyond this many radii the ray's origin is first moved along the ray to the point nearest to the object: then what
- * rounding makes of the test depends on the size of the object, not on its distance. Nearer by, an origin's own bits
- * are best.
- */
-enum { NEAR = 64 };
 
 /*
  * Whether a ray passes the ball around the object's position by so much that no rounding matters: the distance
@@ -76,7 +65,7 @@ bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, co
     double oo = rgi_dot(oc, oc), b = rgi_dot(oc, ray->direction);
     if (passes(oo, b, object->reach, ray)) return false;
     local->shift = 0;
-    if (oo > (double)(NEAR * NEAR) * object->reach * object->reach) {
+    if (oo > (double)(RGI_NEAR * RGI_NEAR) * object->reach * object->reach) {
         local->shift = -(b / ray->dd);
         rgi_rebase3(ray->origin, object->position, local->shift, ray->direction, oc);
     }

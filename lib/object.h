@@ -38,6 +38,17 @@ typedef struct rgi_ray {
     uint32_t mask;
 } rgi_ray;
 
+/** Farther along the ray than any object reaches but infinite boxes (raygrid/shape.h, RG_COORDINATE_MAX): so
+ * positions of hits stay far from overflow. */
+#define RGI_FARTHEST 0x1p340
+
+/**
+ * Beyond this many radii the ray's origin is first moved along the ray to the point nearest to the object: then what
+ * rounding makes of the test depends on the size of the object, not on its distance. Nearer by, an origin's own bits
+ * are best.
+ */
+enum { RGI_NEAR = 64 };
+
 /** Fills *ray; false if it is invalid (raygrid/trace.h says when). */
 bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3], double t_min, double t_max,
                   uint32_t mask);

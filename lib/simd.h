@@ -284,14 +284,30 @@ RGI_INLINE f16 f16_pick(uint32_t bits, f16 a, f16 b) {
 RGI_WIDE(f16, 16)
 #endif
 
-/* The largest lane. */
+/* The largest and the smallest lane. */
+#if RGI_ISA == RGI_ISA_AVX512
 RGI_INLINE float f16_most(f16 a) {
-    float v[16], most;
-    f16_store(v, a);
-    most = v[0];
-    for (int i = 1; i < 16; i++) most = v[i] > most ? v[i] : most;
-    return most;
+    return _mm512_reduce_max_ps(a);
 }
+RGI_INLINE float f16_least(f16 a) {
+    return _mm512_reduce_min_ps(a);
+}
+#else
+RGI_INLINE float f16_most(f16 a) {
+    float v[RGI_LANES];
+    for (int i = 1; i < 16 / RGI_LANES; i++) a.v[0] = part_max(a.v[0], a.v[i]);
+    part_store(v, a.v[0]);
+    for (int i = 1; i < RGI_LANES; i++) v[0] = v[i] > v[0] ? v[i] : v[0];
+    return v[0];
+}
+RGI_INLINE float f16_least(f16 a) {
+    float v[RGI_LANES];
+    for (int i = 1; i < 16 / RGI_LANES; i++) a.v[0] = part_min(a.v[0], a.v[i]);
+    part_store(v, a.v[0]);
+    for (int i = 1; i < RGI_LANES; i++) v[0] = v[i] < v[0] ? v[i] : v[0];
+    return v[0];
+}
+#endif
 
 /**
  * Puts the lanes of t that `bits` names, and the numbers beside them, to the end of two arrays, in the order

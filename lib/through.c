@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: MIT */
+#include "through.h"
+
+#include "vec.h"
+#include "views.h"
+
+#include <string.h>
+
+/* Fewer rays are better off on their own. */
+enum { MIN_PACKET = 4 };
+
+/** Rays that are worked on at a time. */
+typedef struct group {
+    const rgi_call *call;
+    uint64_t first; /* number of the first ray */
+    uint32_t count;
+    uint32_t made; /* bits of the queries that have their ray: in a packet only those that ask */
+    rgi_bundle bundle;
+    rgi_query queries[RGI_PACKET];
+} group;
+
+/* ----------------------------------------------------------------------------------- each ray with its query */
+
+/* What a kernel asks. */
+static bool ask(rgi_beam *beam, uint32_t slot) {
+    rgi_query *q = beam->query;
+    q->done = rgi_query_visit(q, slot);
+    beam->t_max = rgi_beam_above(&beam->scale, beam->pad, q->walk.t_max);
+    return q->done;
+}
+
+static void visit_unbounded(rgi_query *q, const rgi_lattice *lattice) {
+    for (uint32_t i = 0; i < lattice->unbounded_count && !q->done; i++)
+        q->done = rgi_query_visit(q, lattice->unbounded[i]);
+}
+
+static void trace_beams(const rgi_call *c, const rgi_lattice *lattice, rgi_beam *beams, uint32_t count) {
+    if (count == 1)
+        c->scene->kernels->trace_one(lattice, &beams[0]);
+    else if (count)
+        c->scene->kernels->trace_some(lattice, beams, count);
+    for (uint32_t i = 0; i < count; i++) ((rgi_query *)beams[i].query)->walk.cells += beams[i].nodes;
+}
+
+static void through_lattice(group *g, const rgi_lattice *lattice) {
+    rgi_beam beams[RGI_PACKET];
+    uint32_t used = 0;
+    for (uint32_t i = 0; i < g->count; i++) {
+        rgi_query *q = &g->queries[i];
+        rgi_beam *beam = &beams[used];
+        if (!q->done) visit_unbounded(q, lattice);
+        if (q->done || !lattice->root || !rgi_beam_init(beam, lattice, &q->ray, q->walk.t_max)) continue;
+        beam->ask = ask;
+        beam->query = q;
+        used++;
+    }
+    trace_beams(g->call, lattice, beams, used);
+}
+
+static void through_cells(rgi_query *q, const rgi_grid *grid) {
+    double t_max = q->walk.t_max;
+    uint32_t cells = q->walk.cells;
+    rgi_walk_init(&q->walk, q->ray.origin, q->ray.direction, q->ray.t_min, t_max);
+    q->walk.visit = rgi_query_visit;
+    q->walk.context = q;
+    q->done = rgi_grid_walk(grid, &q->walk);
+    q->walk.cells += cells;
+}
+
+static void each_through_grids(group *g) {
+    const rg_scene *scene = g->call->scene;
+    for (uint32_t i = 0; i < g->count; i++) rgi_query_begin(&g->queries[i], g->first + i);
+    g->made = UINT32_MAX;
+    for (uint32_t n = 0; n < scene->grid_places; n++) {
+        const rgi_any_grid *grid = scene->grids[n].grid;
+        if (!grid || !grid->count) continue;
+        if (rgi_any_grid_is_loose(grid)) {
+            through_lattice(g, &grid->lattice);
+            continue;
+        }
+        for (uint32_t i = 0; i < g->count; i++) {
+            if (!g->queries[i].done) through_cells(&g->queries[i], &grid->cells);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------- rays as a bundle */
+
+/* The lattice that holds all objects of the scene, if there is such a one. */
+static const rgi_lattice *only_lattice(const rg_scene *scene) {
+    const rgi_any_grid *only = NULL;
+    for (uint32_t n = 0; n < scene->grid_places; n++) {
+        const rgi_any_grid *grid = scene->grids[n].grid;
+        if (!grid || !grid->count) continue;
+        if (only || !rgi_any_grid_is_loose(grid) || grid->lattice.unbounded_count) return NULL;
+        only = grid;
+    }
+    return only ? &only->lattice : NULL;
+}
+
+static void load_lanes(const rg_input *view, uint64_t first, uint32_t count, double missing, double *out) {
+    if (!view->data) {
+        for (uint32_t i = 0; i < RGI_PACKET; i++) out[i] = missing;
+        return;
+    }
+    const char *at = rgi_record(view->data, view->stride, first);
+    if (view->type == RG_F32) {
+        for (uint32_t i = 0; i < count; i++) out[i] = rgi_read_float(at + view->stride * (ptrdiff_t)i, RG_F32);
+    } else {
+        for (uint32_t i = 0; i < count; i++) out[i] = rgi_read_float(at + view->stride * (ptrdiff_t)i, RG_F64);
+    }
+    for (uint32_t i = count; i < RGI_PACKET; i++) out[i] = out[0];
+}
+
+/* Reads the rays. Returns whether they are neither invalid nor extreme. */
+static bool load(group *g) {
+    const rg_ray_views *rays = &g->call->rays;
+    rgi_bundle *b = &g->bundle;
+    const void *const origins[3] = {rays->origin.x, rays->origin.y, rays->origin.z};
+    const void *const directions[3] = {rays->direction.x, rays->direction.y, rays->direction.z};
+    for (int a = 0; a < 3; a++) {
+        const rg_input origin = {origins[a], rays->origin.stride, rays->origin.type};
+        const rg_input direction = {directions[a], rays->direction.stride, rays->direction.type};
+        load_lanes(&origin, g->first, g->count, 0, b->origin[a]);
+        load_lanes(&direction, g->first, g->count, 0, b->direction[a]);
+    }
+    load_lanes(&rays->t_min, g->first, g->count, 0, b->t_min);
+    load_lanes(&rays->t_max, g->first, g->count, INFINITY, b->t_max);
+    for (uint32_t i = 0; i < RGI_PACKET; i++)
+        b->mask[i] = (uint32_t)rgi_load_integer(&rays->mask, i < g->count ? g->first + i : g->first, UINT32_MAX);
+    b->count = g->count;
+    g->made = 0;
+    return g->call->scene->kernels->prepare(b);
+}
+
+/* The query of a ray of the bundle, made when it is first needed. */
+static rgi_query *query_of(group *g, uint32_t i) {
+    rgi_query *q = &g->queries[i];
+    const rgi_bundle *b = &g->bundle;
+    if (g->made >> i & 1) return q;
+    g->made |= 1u << i;
+    rgi_query_reset(q, g->first + i);
+    for (int a = 0; a < 3; a++) {
+        q->ray.origin[a] = b->origin[a][i];
+        q->ray.direction[a] = b->direction[a][i];
+    }
+    q->local.t_min = q->ray.t_min = b->t_min[i];
+    q->walk.t_max = q->ray.t_max = b->t_max[i];
+    q->ray.dd = b->dd[i];
+    q->ray.to_world = b->to_world[i];
+    q->ray.to_world2 = b->to_world2[i];
+    q->ray.mask = b->mask[i];
+    return q;
+}
+
+/* What a kernel asks for a ray of a packet. */
+static bool ask_of_packet(rgi_packet *p, uint32_t ray, uint32_t slot) {
+    rgi_query *q = query_of(p->context, ray);
+    const rgi_beam_scale scale = {p->shift[ray], p->length[ray]};
+    q->done = rgi_query_visit(q, slot);
+    if (!q->found) return q->done;
+    p->t_hi[ray] = rgi_beam_above(&scale, p->pad[ray], q->walk.t_max);
+    p->t_lo[ray] = rgi_beam_below(&scale, p->pad[ray], q->walk.t_max);
+    return q->done;
+}
+
+/* Whether of a hit no more is wanted than what rgi_meeting has. */
+static bool wants_little(const rgi_call *c) {
+    return !c->plain_hits && !c->wanted && !c->hits.u.data && !c->hits.v.data;
+}
+
+/* Writes the hits that are certain, and were not asked, from bounds alone: where they are is found for all at once.
+ */
+static uint32_t write_certain(group *g, const rgi_packet *p) {
+    const rgi_call *c = g->call;
+    rgi_meeting m;
+    uint32_t slots[RGI_PACKET];
+    memcpy(slots, p->best, sizeof slots);
+    uint32_t any = (uint32_t)__builtin_ctz(p->certain);
+    for (uint32_t i = 0; i < RGI_PACKET; i++) {
+        if (!(p->certain >> i & 1)) slots[i] = slots[any];
+        const rgi_object *object = rgi_scene_object(c->scene, slots[i]);
+        for (int a = 0; a < 3; a++) m.centre[a][i] = object->position[a];
+        m.radius[i] = object->reach;
+    }
+    c->scene->kernels->meet(&g->bundle, &m);
+    for (uint32_t rays = p->certain & m.right; rays; rays &= rays - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(rays);
+        rgi_store(&c->hits.t, g->first + i, m.t[i]);
+        rgi_store_integer(&c->hits.object, g->first + i,
+                          rgi_object_id(rgi_scene_object(c->scene, slots[i]), slots[i]));
+        rgi_store_integer(&c->hits.primitive, g->first + i, 0);
+    }
+    return p->certain & m.right;
+}
+
+/* After the kernel: writes what it found without asking; the rest is asked. Returns the bits of the rays written. */
+static uint32_t finish_packet(group *g, rgi_packet *p) {
+    const rgi_call *c = g->call;
+    uint32_t written = 0;
+    if (c->any) {
+        for (uint32_t i = 0; i < g->count; i++) {
+            bool found = p->certain >> i & 1;
+            if (!found && (g->made >> i & 1)) continue;
+            rgi_store_integer(&c->occluded, g->first + i, found);
+            written |= 1u << i;
+        }
+        return written;
+    }
+    if (p->certain && wants_little(c)) written = write_certain(g, p);
+    for (uint32_t rays = p->certain & ~written; rays; rays &= rays - 1) {
+        uint32_t ray = (uint32_t)__builtin_ctz(rays), slot;
+        memcpy(&slot, &p->best[ray], sizeof slot);
+        (void)ask_of_packet(p, ray, slot);
+    }
+    return written;
+}
+
+/* Takes the rays of a bundle through the lattice. Returns the bits of those that have been written. */
+static uint32_t bundle_through(group *g, const rgi_lattice *lattice) {
+    const rgi_call *c = g->call;
+    const rgi_kernels *kernels = c->scene->kernels;
+    rgi_packet packet;
+    kernels->to_frame(&g->bundle, lattice, &packet);
+    bool counted = c->hits.cells.data || c->hits.tests.data;
+    if (!counted && kernels->bound(&packet, lattice)) {
+        packet.any = c->any;
+        packet.ask_all = c->config.filter || c->config.cull != RG_CULL_NONE || c->scene->masked;
+        for (uint32_t i = 0; i < g->count; i++) packet.ask_all |= g->bundle.mask[i] == 0;
+        packet.ask = ask_of_packet;
+        packet.context = g;
+        kernels->trace_packet(lattice, &packet);
+        return finish_packet(g, &packet);
+    }
+    rgi_beam beams[RGI_PACKET];
+    uint32_t used = 0;
+    for (uint32_t rays = packet.active; rays; rays &= rays - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(rays);
+        rgi_beam_of_packet(&beams[used], &packet, i, lattice);
+        beams[used].ask = ask;
+        beams[used++].query = query_of(g, i);
+    }
+    trace_beams(c, lattice, beams, used);
+    return 0;
+}
+
+void rgi_through(rgi_call *c, uint64_t first, uint64_t last) {
+    group g;
+    uint64_t invalid = 0;
+    bool failed = false;
+    const rgi_lattice *lattice = last - first < MIN_PACKET ? NULL : only_lattice(c->scene);
+    g.call = c;
+    for (uint32_t i = 0; i < RGI_PACKET && i < last - first; i++) rgi_query_init(&g.queries[i], c);
+    for (g.first = first; g.first < last; g.first += g.count) {
+        uint32_t written = 0;
+        g.count = last - g.first < RGI_PACKET ? (uint32_t)(last - g.first) : RGI_PACKET;
+        if (lattice && load(&g))
+            written = bundle_through(&g, lattice);
+        else
+            each_through_grids(&g);
+        for (uint32_t i = 0; i < g.count; i++) {
+            if (written >> i & 1) continue;
+            const rgi_query *q = query_of(&g, i);
+            invalid += !q->valid;
+            failed |= q->failed;
+            if (c->any)
+                rgi_store_integer(&c->occluded, q->index, q->valid && q->found && !q->failed);
+            else
+                rgi_query_write(q);
+        }
+    }
+    if (invalid) __atomic_fetch_add(&c->invalid, invalid, __ATOMIC_RELAXED);
+    if (failed) __atomic_store_n(&c->failed, 1, __ATOMIC_RELAXED);
+}
