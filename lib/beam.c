@@ -16,14 +16,6 @@ float rgi_beam_below(const rgi_beam_scale *scale, float pad, double t) {
     return (float)(at - 0x1p-19 * fabs(at) - 0x1p-50 * fabs(scale->shift) * scale->length) - 4 * pad;
 }
 
-/* A bound of t within the box of all that is stored, from an origin relative to the frame's. */
-static double longest(const rgi_lattice *lattice, const double origin[3]) {
-    double sum = 0;
-    for (int a = 0; a < 3; a++)
-        sum += fabs(origin[a]) * lattice->scale + rgi_max(fabs((double)lattice->lo[a]), fabs((double)lattice->hi[a]));
-    return 2 * sum;
-}
-
 static void start(rgi_beam *beam, const rgi_lattice *lattice) {
     beam->nodes = 0;
     beam->waiting = 0;
@@ -32,11 +24,11 @@ static void start(rgi_beam *beam, const rgi_lattice *lattice) {
     beam->ts[0] = beam->t_min;
 }
 
-bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_ray *ray, double t_max) {
-    double centre[3], from[3], origin[3];
-    double radius = rgi_lattice_middle(lattice, centre), length = sqrt(ray->dd);
+bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
+                   double t_max) {
+    double from[3], origin[3], radius = middle->radius, length = sqrt(ray->dd);
     rgi_sub(ray->origin, lattice->origin, origin);
-    rgi_sub(origin, centre, from);
+    rgi_sub(origin, middle->centre, from);
     double distance2 = rgi_dot(from, from);
     beam->scale.shift = 0;
     beam->scale.length = length * lattice->scale;
@@ -46,17 +38,20 @@ bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_ray *ra
         beam->scale.shift = -b - RGI_BEFORE * radius / length;
         rgi_rebase3(ray->origin, lattice->origin, beam->scale.shift, ray->direction, origin);
     }
+    /* A bound of t within all that is stored. */
+    double longest = 2 * (middle->extent + lattice->scale * (fabs(origin[0]) + fabs(origin[1]) + fabs(origin[2])));
     beam->negative = 0;
     beam->pad = 0;
+    double per_length = 1 / length;
     for (int a = 0; a < 3; a++) {
-        double o = origin[a] * lattice->scale, d = ray->direction[a] / length;
+        double o = origin[a] * lattice->scale, d = ray->direction[a] * per_length;
         double pad = 0x1p-20 * fabs(o) + 0x1p-90 * fabs(beam->scale.shift) * beam->scale.length;
         bool down = d < 0;
         beam->origin[a] = (float)o;
         beam->direction[a] = (float)d;
-        beam->inverse[a] = (float)(1 / rgi_max(fabs(d), RGI_FLAT)) * (down ? -1.0f : 1.0f);
+        beam->inverse[a] = (down ? -1.0f : 1.0f) / (float)rgi_max(fabs(d), RGI_FLAT);
         double widening = pad * fabs((double)beam->inverse[a]);
-        if (fabs(d) < RGI_FLAT) widening += longest(lattice, origin);
+        if (fabs(d) < RGI_FLAT) widening += longest;
         beam->near[a] = (float)(-o * (double)beam->inverse[a] - widening);
         beam->far[a] = (float)(-o * (double)beam->inverse[a] + widening);
         beam->pad += (float)(2 * pad);

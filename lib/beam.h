@@ -64,7 +64,8 @@ typedef struct rgi_beam {
 } rgi_beam;
 
 /** Fills all but ask and query; false if the ray passes all that is stored. */
-bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_ray *ray, double t_max);
+bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
+                   double t_max);
 
 /**
  * Up to RGI_PACKET rays that go the same way: all run along one axis in the same sense, and between four planes, two
@@ -92,11 +93,12 @@ typedef struct rgi_packet {
     uint32_t visits;
     /* the planes: x[across] - slope * x[axis], for rays between lo and hi */
     uint32_t axis, across[2];
-    bool down; /* they run along the axis from high to low */
+    uint32_t far_of_hi[2], far_of_lo[2]; /* which end of a box along the axis counts for each plane: see end_of */
+    uint32_t front, back;                /* and which the rays come to first and last */
+    float sense;                         /* 1, or -1 if they run along the axis from high to low */
     float slope_lo[2], slope_hi[2], lo[2], hi[2];
     float norm_lo[2], norm_hi[2];  /* of the planes' normals */
     float start_first, start_last; /* along the axis: the origins lie between; first in the sense of the rays */
-    float stretch;                 /* t is at least so many times the way along the axis */
     float pad_most;
     uint32_t negative;
 } rgi_packet;
@@ -114,9 +116,10 @@ typedef struct rgi_kernels {
     /** Scales the rays as rgi_ray_init; false if one is invalid, or extreme: then they are to be taken one by one. */
     bool (*prepare)(rgi_bundle *bundle);
     /** Brings prepared rays into the frame of a lattice. */
-    void (*to_frame)(const rgi_bundle *bundle, const rgi_lattice *lattice, rgi_packet *packet);
+    void (*to_frame)(const rgi_bundle *bundle, const rgi_lattice *lattice, const rgi_middle *middle,
+                     rgi_packet *packet);
     /** Whether the rays of a packet go the same way; then sets the planes that bound them. */
-    bool (*bound)(rgi_packet *packet, const rgi_lattice *lattice);
+    bool (*bound)(rgi_packet *packet, const rgi_lattice *lattice, const rgi_middle *middle);
     /** Where the rays meet balls, to the same bits as rgi_object_intersect. */
     void (*meet)(const rgi_bundle *bundle, rgi_meeting *meeting);
     /** Takes one ray through the lattice. */

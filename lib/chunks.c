@@ -9,15 +9,20 @@ void rgi_chunks_init(rgi_chunks *chunks, rgi_memory *memory, uint32_t bytes) {
     chunks->bytes = bytes;
 }
 
-/* Chunks of the slab that begins with chunk `first`: one, or what fits in a huge page once there are as many already.
- */
-static uint32_t slab_length(const rgi_chunks *chunks, uint32_t first) {
-    uint32_t many = (RGI_HUGE_PAGE - RGI_SLACK) / chunks->bytes;
-    return first >= many && many > 1 ? many : 1;
+/* Huge pages of the slab that begins with chunk `first`: none as long as one would not be filled; then about a
+ * quarter of what there is already. */
+static uint32_t slab_pages(const rgi_chunks *chunks, uint32_t first) {
+    uint64_t filled = (uint64_t)first * chunks->bytes / RGI_HUGE_PAGE;
+    return filled < 4 ? filled > 0 : filled < 64 ? (uint32_t)(filled / 4) : 16;
 }
 
 static size_t slab_bytes(const rgi_chunks *chunks, uint32_t first) {
-    return (size_t)slab_length(chunks, first) * chunks->bytes + RGI_SLACK;
+    uint32_t pages = slab_pages(chunks, first);
+    return pages ? (size_t)pages * RGI_HUGE_PAGE : (size_t)chunks->bytes + RGI_SLACK;
+}
+
+static uint32_t slab_length(const rgi_chunks *chunks, uint32_t first) {
+    return (uint32_t)((slab_bytes(chunks, first) - RGI_SLACK) / chunks->bytes);
 }
 
 void rgi_chunks_free(rgi_chunks *chunks) {

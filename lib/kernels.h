@@ -215,25 +215,26 @@ typedef struct packet_stack {
     rgi_ref refs[PACKET_STACK];
 } packet_stack;
 
-/* Boxes that some ray of the packet may meet, as bits; *t: a bound from below of where. lo and hi: three arrays each,
- * `room` floats apart. */
+/* A box's planes are six arrays, lo[3] and hi[3], `room` floats apart: this is the number of one. */
+RGI_INLINE uint32_t end_of(uint32_t axis, bool hi) {
+    return hi ? axis + 3 : axis;
+}
+
+/* Boxes that some ray of the packet may meet, as bits; *t: a bound from below of where. */
 #define MEET_TOGETHER(wide, lanes)                                                                                   \
-    RGI_INLINE uint32_t meet_together_##wide(const float *lo, const float *hi, uint32_t room, const rgi_packet *p,   \
-                                             float most, wide *t) {                                                  \
+    RGI_INLINE uint32_t meet_together_##wide(const float *planes, uint32_t room, const rgi_packet *p, float most,    \
+                                             wide *t) {                                                              \
         uint32_t met = (uint32_t)((1ull << (lanes)) - 1);                                                            \
         for (int i = 0; i < 2; i++) {                                                                                \
-            const float *lo_k = lo + p->axis * room, *hi_k = hi + p->axis * room;                                    \
-            wide below = wide##_fma(wide##_set(-p->slope_hi[i]), wide##_load(p->slope_hi[i] >= 0 ? hi_k : lo_k),     \
-                                    wide##_load(lo + p->across[i] * room));                                          \
-            wide above = wide##_fma(wide##_set(-p->slope_lo[i]), wide##_load(p->slope_lo[i] >= 0 ? lo_k : hi_k),     \
-                                    wide##_load(hi + p->across[i] * room));                                          \
+            wide below = wide##_fma(wide##_set(-p->slope_hi[i]), wide##_load(planes + p->far_of_hi[i] * room),       \
+                                    wide##_load(planes + p->across[i] * room));                                      \
+            wide above = wide##_fma(wide##_set(-p->slope_lo[i]), wide##_load(planes + p->far_of_lo[i] * room),       \
+                                    wide##_load(planes + (p->across[i] + 3) * room));                                \
             met &= wide##_le(below, wide##_set(p->hi[i])) & wide##_le(wide##_set(p->lo[i]), above);                  \
         }                                                                                                            \
-        wide sense = wide##_set(p->down ? -1.0f : 1.0f);                                                             \
-        wide near = wide##_mul(wide##_load((p->down ? hi : lo) + p->axis * room), sense);                            \
-        wide far = wide##_mul(wide##_load((p->down ? lo : hi) + p->axis * room), sense);                             \
-        *t = wide##_mul(wide##_sub(near, wide##_set(p->start_last)), wide##_set(p->stretch));                        \
-        return met & wide##_le(*t, wide##_set(most)) & wide##_le(wide##_set(p->start_first), far);                   \
+        wide sense = wide##_set(p->sense), back = wide##_mul(wide##_load(planes + p->back * room), sense);           \
+        *t = wide##_fma(wide##_load(planes + p->front * room), sense, wide##_set(-p->start_last));                   \
+        return met & wide##_le(*t, wide##_set(most)) & wide##_le(wide##_set(p->start_first), back);                  \
     }
 
 MEET_TOGETHER(f8, 8)
@@ -250,7 +251,7 @@ RGI_INLINE uint32_t meet_balls_together(const float *f, uint32_t room, const rgi
         met &= f16_le(below, f16_mul(radius, f16_set(p->norm_hi[i])));
         met &= f16_le(above, f16_mul(radius, f16_set(p->norm_lo[i])));
     }
-    along = f16_mul(along, f16_set(p->down ? -1.0f : 1.0f));
+    along = f16_mul(along, f16_set(p->sense));
     met &= f16_le(f16_sub(f16_sub(along, radius), f16_set(p->start_last)), f16_set(most));
     return met & f16_le(f16_set(p->start_first), f16_add(along, radius));
 }
@@ -285,12 +286,14 @@ RGI_INLINE bool bound_slopes(rgi_packet *p, uint32_t which, f16 per_way, f16 pad
     const uint32_t a = p->across[which], k = p->axis;
     /* Per length of way along the axis, whichever its sense. */
     f16 slopes = f16_mul(f16_load(p->direction[a]), per_way);
-    float least = f16_least(slopes), most = f16_most(slopes), sense = p->down ? -1.0f : 1.0f;
+    float least = f16_least(slopes), most = f16_most(slopes);
     if (!(most - least <= SLOPES)) return false;
     least -= SLOPE_PAD * (1 + fabsf(least));
     most += SLOPE_PAD * (1 + fabsf(most));
-    p->slope_lo[which] = sense * least;
-    p->slope_hi[which] = sense * most;
+    p->slope_lo[which] = p->sense * least;
+    p->slope_hi[which] = p->sense * most;
+    p->far_of_hi[which] = end_of(k, p->slope_hi[which] >= 0);
+    p->far_of_lo[which] = end_of(k, p->slope_lo[which] < 0);
     f16 o = f16_load(p->origin[a]), along = f16_load(p->origin[k]);
     p->lo[which] = f16_least(f16_sub(f16_fma(f16_set(-p->slope_lo[which]), along, o), pad));
     p->hi[which] = f16_most(f16_add(f16_fma(f16_set(-p->slope_hi[which]), along, o), pad));
@@ -299,36 +302,39 @@ RGI_INLINE bool bound_slopes(rgi_packet *p, uint32_t which, f16 per_way, f16 pad
     return p->hi[which] - p->lo[which] <= APART * radius;
 }
 
-static bool bound(rgi_packet *p, const rgi_lattice *lattice) {
+static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *middle) {
     float d[3] = {fabsf(p->direction[0][0]), fabsf(p->direction[1][0]), fabsf(p->direction[2][0])};
-    double centre[3];
     p->axis = d[1] > d[0] ? 1 : 0;
     if (d[2] > d[p->axis]) p->axis = 2;
     p->across[0] = (p->axis + 1) % 3;
     p->across[1] = (p->axis + 2) % 3;
-    p->down = p->inverse[p->axis][0] < 0;
+    bool down = p->inverse[p->axis][0] < 0;
+    p->sense = down ? -1.0f : 1.0f;
+    p->front = end_of(p->axis, down);
+    p->back = end_of(p->axis, !down);
     p->negative = 0;
     for (uint32_t a = 0; a < 3; a++) p->negative |= (uint32_t)(p->inverse[a][0] < 0) << a;
     /* All in one sense, and not too steeply across it. */
-    f16 way = f16_mul(f16_load(p->direction[p->axis]), f16_set(p->down ? -1.0f : 1.0f));
+    f16 way = f16_mul(f16_load(p->direction[p->axis]), f16_set(p->sense));
     f16 pad = f16_mul(f16_load(p->pad), f16_set(4));
     if (f16_least(way) < 0.25f) return false;
     /* What lies behind an origin is out of the planes. */
     f16 first = f16_load(p->t_first), behind = f16_sub(f16_set(0), f16_fma(pad, f16_set(4), f16_set(0x1p-60f)));
     if (f16_le(first, behind)) return false;
-    f16 per_way = f16_mul(f16_load(p->inverse[p->axis]), f16_set(p->down ? -1.0f : 1.0f));
-    float radius = (float)(rgi_lattice_middle(lattice, centre) * lattice->scale);
+    f16 per_way = f16_mul(f16_load(p->inverse[p->axis]), f16_set(p->sense));
+    float radius = (float)(middle->radius * lattice->scale);
     if (!bound_slopes(p, 0, per_way, pad, radius) || !bound_slopes(p, 1, per_way, pad, radius)) return false;
-    f16 start = f16_mul(f16_load(p->origin[p->axis]), f16_set(p->down ? -1.0f : 1.0f));
+    f16 start = f16_mul(f16_load(p->origin[p->axis]), f16_set(p->sense));
     p->start_first = f16_least(f16_sub(start, pad));
+    /* A t is at least the way along the axis, but for what rounding makes of directions. */
     p->start_last = f16_most(f16_add(start, pad));
-    p->stretch = 1 - 0x1p-18f;
+    p->start_last += 0x1p-18f * (fabsf(p->start_last) + (float)middle->extent);
     p->pad_most = f16_most(f16_load(p->pad));
     return true;
 }
 
 /* One ball, all rays. Returns whether t_hi of some ray may have changed. */
-RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_t slot) {
+RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_t slot, const void *object) {
     f16 to[3], along = f16_set(0), square = f16_set(0), pad = f16_load(p->pad);
     for (int a = 0; a < 3; a++) {
         to[a] = f16_sub(f16_set(centre[a]), f16_load(p->origin[a]));
@@ -357,6 +363,7 @@ RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_
         f16 t_lo = f16_load(p->t_lo);
         certain = met & f16_le(zero, within) & f16_le(zero, least) & f16_le(f16_load(p->t_min), first);
         certain &= ~f16_le(t_lo, latest);
+        if (certain) __builtin_prefetch(object);
         if (p->any) {
             p->certain |= certain;
             p->active &= ~certain;
@@ -386,17 +393,33 @@ RGI_INLINE bool meet_box(rgi_packet *p, const float *lo, const float *hi, uint32
     return met != 0;
 }
 
+/* Whether any ray still on its way meets the box that a node keeps of its child: rays that have hit something nearer
+ * no more do, which the planes around all of them can't tell. */
+RGI_INLINE bool meet_child(const rgi_lattice *lattice, const rgi_packet *p, uint32_t parent) {
+    if (parent == RGI_ROOT || (parent & 15) == RGI_OWN) return true;
+    const float *planes = rgi_node_at(lattice, parent >> 4)->lo[0] + (parent & 15);
+    f16 first = f16_load(p->t_first), last = f16_load(p->t_hi);
+    for (uint32_t a = 0; a < 3; a++) {
+        f16 inverse = f16_load(p->inverse[a]);
+        f16 one = f16_mul(f16_set(planes[a * RGI_OCTANTS]), inverse);
+        f16 other = f16_mul(f16_set(planes[(a + 3) * RGI_OCTANTS]), inverse);
+        first = f16_max(f16_add(f16_min(one, other), f16_load(p->near[a])), first);
+        last = f16_min(f16_add(f16_max(one, other), f16_load(p->far[a])), last);
+    }
+    return (f16_le(first, last) & p->active) != 0;
+}
+
 RGI_INLINE float farthest(const rgi_packet *p) {
     return f16_most(f16_pick(p->active, f16_load(p->t_hi), f16_set(-INFINITY)));
 }
 
-RGI_INLINE void visit_block(rgi_packet *p, packet_stack *s, const rgi_block *block) {
+RGI_INLINE void visit_block(const rgi_lattice *lattice, rgi_packet *p, packet_stack *s, const rgi_block *block) {
     uint32_t room = rgi_block_room(block->kind), met;
     const float *f = rgi_block_lanes(block, room);
     bool boxes = block->kind & RGI_BOXES, changed = false;
     f16 t;
     if (boxes)
-        met = meet_together_f16(f, f + 3 * room, room, p, s->most, &t);
+        met = meet_together_f16(f, room, p, s->most, &t);
     else
         met = meet_balls_together(f, room, p, s->most);
     for (met &= used_lanes(block); met; met &= met - 1) {
@@ -405,7 +428,8 @@ RGI_INLINE void visit_block(rgi_packet *p, packet_stack *s, const rgi_block *blo
             changed |= meet_box(p, f + i, f + 3 * room + i, room, block->slots[i]);
         } else {
             const float centre[3] = {f[i], f[room + i], f[2 * room + i]};
-            changed |= meet_ball(p, centre, f[3 * room + i], block->slots[i]);
+            const void *object = rgi_slots_at(lattice->objects, block->slots[i]);
+            changed |= meet_ball(p, centre, f[3 * room + i], block->slots[i], object);
         }
     }
     if (changed) s->most = farthest(p);
@@ -421,20 +445,23 @@ static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
         float t = s.ts[--s.depth];
         rgi_ref ref = s.refs[s.depth];
         if (t > s.most) continue;
-        p->visits++;
         if (rgi_is_block(ref)) {
             const rgi_block *block = rgi_block_at(lattice, ref);
+            if (!meet_child(lattice, p, block->parent)) continue;
             if (block->next) {
                 s.refs[s.depth] = block->next;
                 s.ts[s.depth++] = t;
             }
-            visit_block(p, &s, block);
+            visit_block(lattice, p, &s, block);
             continue;
         }
         const rgi_node *n = rgi_arena_at(&lattice->arena, ref);
         f8 ts;
-        uint32_t met = meet_together_f8(n->lo[0], n->hi[0], RGI_OCTANTS, p, s.most, &ts);
+        if (!meet_child(lattice, p, n->parent)) continue;
+        uint32_t met = meet_together_f8(n->lo[0], RGI_OCTANTS, p, s.most, &ts);
+        uint32_t before = s.depth;
         s.depth += f8_keep(met, orders[p->negative], ts, n->child, s.ts + s.depth, s.refs + s.depth);
+        for (uint32_t i = before; i < s.depth; i++) fetch_ahead(lattice, s.refs[i]);
         if (n->own) {
             s.refs[s.depth] = n->own;
             s.ts[s.depth++] = t;

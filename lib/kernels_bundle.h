@@ -101,20 +101,21 @@ static void meet(const rgi_bundle *b, rgi_meeting *m) {
 }
 
 /* rgi_beam_init for all lanes of a packet. */
-static void to_frame(const rgi_bundle *b, const rgi_lattice *lattice, rgi_packet *p) {
+static void to_frame(const rgi_bundle *b, const rgi_lattice *lattice, const rgi_middle *middle, rgi_packet *p) {
     double from[3][RGI_PACKET], origin[3][RGI_PACKET], length[RGI_PACKET], shift[RGI_PACKET], pads[RGI_PACKET];
-    double longest[RGI_PACKET], centre[3];
-    double radius = rgi_lattice_middle(lattice, centre), scale = lattice->scale;
+    double longest[RGI_PACKET], per_length[RGI_PACKET];
+    double radius = middle->radius, scale = lattice->scale;
     int any_far = 0, passes[RGI_PACKET];
     LANES(i) {
         double distance2 = 0;
         for (int a = 0; a < 3; a++) {
             origin[a][i] = b->origin[a][i] - lattice->origin[a];
-            from[a][i] = origin[a][i] - centre[a];
+            from[a][i] = origin[a][i] - middle->centre[a];
             distance2 += from[a][i] * from[a][i];
         }
         any_far |= distance2 > RGI_FAR * RGI_FAR * radius * radius;
         length[i] = sqrt(b->dd[i]);
+        per_length[i] = 1 / length[i];
         shift[i] = pads[i] = 0;
         passes[i] = 0;
     }
@@ -126,7 +127,7 @@ static void to_frame(const rgi_bundle *b, const rgi_lattice *lattice, rgi_packet
             bool far = distance2 > RGI_FAR * RGI_FAR * radius * radius;
             double along = od / b->dd[i];
             passes[i] = far & (distance2 - along * along * b->dd[i] > 2 * radius * radius + 0x1p-40 * distance2);
-            shift[i] = far ? -along - RGI_BEFORE * radius / length[i] : 0;
+            shift[i] = far ? -along - RGI_BEFORE * radius * per_length[i] : 0;
         }
         for (int a = 0; a < 3; a++) {
             LANES(i) {
@@ -135,12 +136,11 @@ static void to_frame(const rgi_bundle *b, const rgi_lattice *lattice, rgi_packet
             }
         }
     }
-    double extent = 0;
-    for (int a = 0; a < 3; a++) extent += rgi_max(fabs((double)lattice->lo[a]), fabs((double)lattice->hi[a]));
-    LANES(i) longest[i] = 2 * (extent + scale * (fabs(origin[0][i]) + fabs(origin[1][i]) + fabs(origin[2][i])));
+    LANES(i)
+    longest[i] = 2 * (middle->extent + scale * (fabs(origin[0][i]) + fabs(origin[1][i]) + fabs(origin[2][i])));
     for (int a = 0; a < 3; a++) {
         LANES(i) {
-            double o = origin[a][i] * scale, d = b->direction[a][i] / length[i];
+            double o = origin[a][i] * scale, d = b->direction[a][i] * per_length[i];
             double pad = 0x1p-20 * fabs(o) + 0x1p-90 * fabs(shift[i]) * length[i] * scale;
             float straight = (float)rgi_max(fabs(d), RGI_FLAT);
             float inverse = (d < 0 ? -1.0f : 1.0f) / straight;

@@ -780,13 +780,17 @@ bool rgi_lattice_has_cell(const rgi_lattice *lattice, const rgi_bound *bound) {
     return make_entry(lattice, 0, bound, &e);
 }
 
-double rgi_lattice_middle(const rgi_lattice *lattice, double centre[3]) {
+rgi_middle rgi_lattice_middle(const rgi_lattice *lattice) {
+    rgi_middle m;
     double half[3];
+    m.extent = 0;
     for (int a = 0; a < 3; a++) {
-        centre[a] = 0.5 * ((double)lattice->lo[a] + lattice->hi[a]) / lattice->scale;
+        m.centre[a] = 0.5 * ((double)lattice->lo[a] + lattice->hi[a]) / lattice->scale;
         half[a] = 0.5 * ((double)lattice->hi[a] - lattice->lo[a]) / lattice->scale;
+        m.extent += rgi_max(fabs((double)lattice->lo[a]), fabs((double)lattice->hi[a]));
     }
-    return sqrt(rgi_dot(half, half));
+    m.radius = sqrt(rgi_dot(half, half));
+    return m;
 }
 
 void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]) {

@@ -152,8 +152,14 @@ bool rgi_lattice_has_cell(const rgi_lattice *lattice, const rgi_bound *bound);
 /** Makes room for so many more that have no cell. */
 rg_result rgi_lattice_reserve(rgi_lattice *lattice, uint64_t unbounded);
 
-/** The middle of what has a cell, relative to the frame's origin but in world units, and its radius. */
-double rgi_lattice_middle(const rgi_lattice *lattice, double centre[3]);
+/** The middle of what has a cell. */
+typedef struct rgi_middle {
+    double centre[3]; /* relative to the frame's origin, in world units */
+    double radius;    /* in world units */
+    double extent;    /* the largest coordinates along the axes, added up, in units of the frame */
+} rgi_middle;
+
+rgi_middle rgi_lattice_middle(const rgi_lattice *lattice);
 
 /** A world box around all that has a cell; lo > hi if there is nothing. */
 void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]);

@@ -16,7 +16,7 @@ enum { ALIGNMENT = 64 };
 /* Large blocks are put on huge pages where the system has them to give: a wish, whose failure changes nothing. */
 static void *default_allocate(void *user, size_t size, size_t alignment) {
     void *block;
-    bool large = size > RGI_HUGE_PAGE / 2;
+    bool large = size >= RGI_HUGE_PAGE;
     (void)user;
     if (posix_memalign(&block, large ? RGI_HUGE_PAGE : alignment, size) != 0) return NULL;
 #ifdef MADV_HUGEPAGE

@@ -14,7 +14,9 @@ typedef struct group {
     const rgi_call *call;
     uint64_t first; /* number of the first ray */
     uint32_t count;
-    uint32_t made; /* bits of the queries that have their ray: in a packet only those that ask */
+    const rgi_lattice *lattice; /* which holds all objects of the scene; or NULL */
+    rgi_middle middle;          /* of it */
+    uint32_t made;              /* bits of the queries that have their ray: in a packet only those that ask */
     rgi_bundle bundle;
     rgi_query queries[RGI_PACKET];
 } group;
@@ -44,12 +46,13 @@ static void trace_beams(const rgi_call *c, const rgi_lattice *lattice, rgi_beam 
 
 static void through_lattice(group *g, const rgi_lattice *lattice) {
     rgi_beam beams[RGI_PACKET];
+    const rgi_middle middle = rgi_lattice_middle(lattice);
     uint32_t used = 0;
     for (uint32_t i = 0; i < g->count; i++) {
         rgi_query *q = &g->queries[i];
         rgi_beam *beam = &beams[used];
         if (!q->done) visit_unbounded(q, lattice);
-        if (q->done || !lattice->root || !rgi_beam_init(beam, lattice, &q->ray, q->walk.t_max)) continue;
+        if (q->done || !lattice->root || !rgi_beam_init(beam, lattice, &middle, &q->ray, q->walk.t_max)) continue;
         beam->ask = ask;
         beam->query = q;
         used++;
@@ -169,45 +172,56 @@ static bool wants_little(const rgi_call *c) {
     return !c->plain_hits && !c->wanted && !c->hits.u.data && !c->hits.v.data;
 }
 
-/* Writes the hits that are certain, and were not asked, from bounds alone: where they are is found for all at once.
- */
-static uint32_t write_certain(group *g, const rgi_packet *p) {
-    const rgi_call *c = g->call;
-    rgi_meeting m;
+/* Where the rays meet the balls that are certain: for all at once. Returns the bits of those it is right for. */
+static uint32_t meet_certain(const group *g, const rgi_packet *p, rgi_meeting *m, uint64_t ids[RGI_PACKET]) {
+    const rg_scene *scene = g->call->scene;
     uint32_t slots[RGI_PACKET];
     memcpy(slots, p->best, sizeof slots);
-    uint32_t any = (uint32_t)__builtin_ctz(p->certain);
+    uint32_t any = slots[__builtin_ctz(p->certain)];
     for (uint32_t i = 0; i < RGI_PACKET; i++) {
-        if (!(p->certain >> i & 1)) slots[i] = slots[any];
-        const rgi_object *object = rgi_scene_object(c->scene, slots[i]);
-        for (int a = 0; a < 3; a++) m.centre[a][i] = object->position[a];
-        m.radius[i] = object->reach;
+        uint32_t slot = p->certain >> i & 1 ? slots[i] : any;
+        const rgi_object *object = rgi_scene_object(scene, slot);
+        for (int a = 0; a < 3; a++) m->centre[a][i] = object->position[a];
+        m->radius[i] = object->reach;
+        ids[i] = rgi_object_id(object, slot);
     }
-    c->scene->kernels->meet(&g->bundle, &m);
-    for (uint32_t rays = p->certain & m.right; rays; rays &= rays - 1) {
-        uint32_t i = (uint32_t)__builtin_ctz(rays);
-        rgi_store(&c->hits.t, g->first + i, m.t[i]);
-        rgi_store_integer(&c->hits.object, g->first + i,
-                          rgi_object_id(rgi_scene_object(c->scene, slots[i]), slots[i]));
-        rgi_store_integer(&c->hits.primitive, g->first + i, 0);
+    scene->kernels->meet(&g->bundle, m);
+    return p->certain & m->right;
+}
+
+/* Writes the hits that are certain and the misses of rays that asked nothing. Returns their bits. */
+static uint32_t write_unasked(const group *g, const rgi_packet *p) {
+    const rgi_call *c = g->call;
+    rgi_meeting m;
+    uint64_t ids[RGI_PACKET] = {0};
+    uint32_t all = (1u << g->count) - 1, met = 0, written = all & ~g->made & ~p->certain;
+    if (p->certain) met = meet_certain(g, p, &m, ids);
+    written |= met;
+    for (uint32_t i = 0; i < g->count; i++) {
+        bool hit = met >> i & 1;
+        if (!(written >> i & 1)) continue;
+        rgi_store(&c->hits.t, g->first + i, hit ? m.t[i] : INFINITY);
+        rgi_store_integer(&c->hits.object, g->first + i, hit ? ids[i] : RG_NO_OBJECT);
+        rgi_store_integer(&c->hits.primitive, g->first + i, hit ? 0 : RG_NO_PRIMITIVE);
     }
-    return p->certain & m.right;
+    return written;
+}
+
+static uint32_t write_occluded(const group *g, const rgi_packet *p) {
+    uint32_t written = 0;
+    for (uint32_t i = 0; i < g->count; i++) {
+        bool found = p->certain >> i & 1;
+        if (!found && (g->made >> i & 1)) continue;
+        rgi_store_integer(&g->call->occluded, g->first + i, found);
+        written |= 1u << i;
+    }
+    return written;
 }
 
 /* After the kernel: writes what it found without asking; the rest is asked. Returns the bits of the rays written. */
 static uint32_t finish_packet(group *g, rgi_packet *p) {
-    const rgi_call *c = g->call;
-    uint32_t written = 0;
-    if (c->any) {
-        for (uint32_t i = 0; i < g->count; i++) {
-            bool found = p->certain >> i & 1;
-            if (!found && (g->made >> i & 1)) continue;
-            rgi_store_integer(&c->occluded, g->first + i, found);
-            written |= 1u << i;
-        }
-        return written;
-    }
-    if (p->certain && wants_little(c)) written = write_certain(g, p);
+    if (g->call->any) return write_occluded(g, p);
+    uint32_t written = wants_little(g->call) ? write_unasked(g, p) : 0;
     for (uint32_t rays = p->certain & ~written; rays; rays &= rays - 1) {
         uint32_t ray = (uint32_t)__builtin_ctz(rays), slot;
         memcpy(&slot, &p->best[ray], sizeof slot);
@@ -217,30 +231,30 @@ static uint32_t finish_packet(group *g, rgi_packet *p) {
 }
 
 /* Takes the rays of a bundle through the lattice. Returns the bits of those that have been written. */
-static uint32_t bundle_through(group *g, const rgi_lattice *lattice) {
+static uint32_t bundle_through(group *g) {
     const rgi_call *c = g->call;
     const rgi_kernels *kernels = c->scene->kernels;
     rgi_packet packet;
-    kernels->to_frame(&g->bundle, lattice, &packet);
+    kernels->to_frame(&g->bundle, g->lattice, &g->middle, &packet);
     bool counted = c->hits.cells.data || c->hits.tests.data;
-    if (!counted && kernels->bound(&packet, lattice)) {
+    if (!counted && kernels->bound(&packet, g->lattice, &g->middle)) {
         packet.any = c->any;
         packet.ask_all = c->config.filter || c->config.cull != RG_CULL_NONE || c->scene->masked;
         for (uint32_t i = 0; i < g->count; i++) packet.ask_all |= g->bundle.mask[i] == 0;
         packet.ask = ask_of_packet;
         packet.context = g;
-        kernels->trace_packet(lattice, &packet);
+        kernels->trace_packet(g->lattice, &packet);
         return finish_packet(g, &packet);
     }
     rgi_beam beams[RGI_PACKET];
     uint32_t used = 0;
     for (uint32_t rays = packet.active; rays; rays &= rays - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(rays);
-        rgi_beam_of_packet(&beams[used], &packet, i, lattice);
+        rgi_beam_of_packet(&beams[used], &packet, i, g->lattice);
         beams[used].ask = ask;
         beams[used++].query = query_of(g, i);
     }
-    trace_beams(c, lattice, beams, used);
+    trace_beams(c, g->lattice, beams, used);
     return 0;
 }
 
@@ -248,14 +262,15 @@ void rgi_through(rgi_call *c, uint64_t first, uint64_t last) {
     group g;
     uint64_t invalid = 0;
     bool failed = false;
-    const rgi_lattice *lattice = last - first < MIN_PACKET ? NULL : only_lattice(c->scene);
     g.call = c;
+    g.lattice = last - first < MIN_PACKET ? NULL : only_lattice(c->scene);
+    if (g.lattice) g.middle = rgi_lattice_middle(g.lattice);
     for (uint32_t i = 0; i < RGI_PACKET && i < last - first; i++) rgi_query_init(&g.queries[i], c);
     for (g.first = first; g.first < last; g.first += g.count) {
         uint32_t written = 0;
         g.count = last - g.first < RGI_PACKET ? (uint32_t)(last - g.first) : RGI_PACKET;
-        if (lattice && load(&g))
-            written = bundle_through(&g, lattice);
+        if (g.lattice && load(&g))
+            written = bundle_through(&g);
         else
             each_through_grids(&g);
         for (uint32_t i = 0; i < g.count; i++) {
