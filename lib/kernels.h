@@ -208,9 +208,14 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
  */
 enum { PACKET_STACK = 1024 };
 
+/* With so few rays left that have hit nothing, boxes are tested for each ray of the packet before they are entered.
+ */
+enum { THIN = 8 };
+
 typedef struct packet_stack {
     uint32_t depth;
     float most; /* of t_hi: what is farther concerns no ray any more */
+    bool thin;  /* few rays have not hit anything yet */
     float ts[PACKET_STACK];
     rgi_ref refs[PACKET_STACK];
 } packet_stack;
@@ -432,7 +437,9 @@ RGI_INLINE void visit_block(const rgi_lattice *lattice, rgi_packet *p, packet_st
             changed |= meet_ball(p, centre, f[3 * room + i], block->slots[i], object);
         }
     }
-    if (changed) s->most = farthest(p);
+    if (!changed) return;
+    s->most = farthest(p);
+    s->thin = __builtin_popcount(p->active & ~p->certain) <= THIN;
 }
 
 static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
@@ -441,13 +448,14 @@ static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
     s.refs[0] = lattice->root;
     s.ts[0] = -INFINITY;
     s.most = farthest(p);
+    s.thin = false;
     while (s.depth && p->active) {
         float t = s.ts[--s.depth];
         rgi_ref ref = s.refs[s.depth];
         if (t > s.most) continue;
         if (rgi_is_block(ref)) {
             const rgi_block *block = rgi_block_at(lattice, ref);
-            if (!meet_child(lattice, p, block->parent)) continue;
+            if (s.thin && !meet_child(lattice, p, block->parent)) continue;
             if (block->next) {
                 s.refs[s.depth] = block->next;
                 s.ts[s.depth++] = t;
@@ -457,7 +465,7 @@ static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
         }
         const rgi_node *n = rgi_arena_at(&lattice->arena, ref);
         f8 ts;
-        if (!meet_child(lattice, p, n->parent)) continue;
+        if (s.thin && !meet_child(lattice, p, n->parent)) continue;
         uint32_t met = meet_together_f8(n->lo[0], RGI_OCTANTS, p, s.most, &ts);
         uint32_t before = s.depth;
         s.depth += f8_keep(met, orders[p->negative], ts, n->child, s.ts + s.depth, s.refs + s.depth);

@@ -33,40 +33,29 @@ void rgi_frame_pop(rgi_frame *frame) {
 
 void rgi_scene_begin_read(rg_scene *scene, rgi_frame *frame) {
     bool inside = innermost && rgi_scene_inside(scene);
-    if (!inside) pthread_rwlock_rdlock(&scene->lock);
+    if (!inside) rgi_lock_read(&scene->lock);
     rgi_frame_push(frame, scene);
     frame->locked = !inside;
 }
 
 void rgi_scene_end_read(rg_scene *scene, rgi_frame *frame) {
     rgi_frame_pop(frame);
-    if (frame->locked) pthread_rwlock_unlock(&scene->lock);
+    if (frame->locked) rgi_lock_leave_read(&scene->lock);
 }
 
 rg_result rgi_scene_begin_change(rg_scene *scene, rgi_frame *frame) {
     if (!scene) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL");
     if (innermost && rgi_scene_inside(scene))
         return rgi_fail(RG_BUSY, "a scene can't be changed from inside a callback of its own");
-    pthread_rwlock_wrlock(&scene->lock);
+    rgi_lock_write(&scene->lock);
     rgi_frame_push(frame, scene);
     return RG_OK;
 }
 
 rg_result rgi_scene_end_change(rg_scene *scene, rgi_frame *frame, rg_result result) {
     rgi_frame_pop(frame);
-    pthread_rwlock_unlock(&scene->lock);
+    rgi_lock_leave_write(&scene->lock);
     return result;
-}
-
-/* A waiting change goes before traces that come later, so that endless tracing can't starve it. */
-static void lock_init(pthread_rwlock_t *lock) {
-    pthread_rwlockattr_t attributes;
-    pthread_rwlockattr_init(&attributes);
-#ifdef PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP
-    pthread_rwlockattr_setkind_np(&attributes, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
-#endif
-    pthread_rwlock_init(lock, &attributes);
-    pthread_rwlockattr_destroy(&attributes);
 }
 
 /* ------------------------------------------------------------------------------------------------ lifetime */
@@ -89,7 +78,7 @@ static void scene_free(rg_scene *scene) {
     for (uint32_t i = 0; i < scene->grid_places; i++) rgi_scene_drop_grid(scene, i);
     rgi_slots_free(&scene->objects);
     rgi_slots_free(&scene->linears);
-    pthread_rwlock_destroy(&scene->lock);
+    rgi_lock_destroy(&scene->lock);
     rgi_memory memory = scene->memory;
     rgi_release(&memory, scene, 1, sizeof *scene);
 }
@@ -119,7 +108,7 @@ rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
     scene->log = config.log;
     scene->log_user = config.log_user;
     scene->kernels = rgi_kernels_best();
-    lock_init(&scene->lock);
+    rgi_lock_init(&scene->lock);
     rgi_slots_init(&scene->objects, &scene->memory, sizeof(rgi_object), "objects");
     rgi_slots_init(&scene->linears, &scene->memory, sizeof(rgi_linear), "poses");
     result = rgi_scene_add_grid(scene, &grid, &index);

@@ -8,13 +8,12 @@
 
 #include "beam.h"
 #include "grid.h"
+#include "lock.h"
 #include "memory.h"
 #include "object.h"
 #include "pool.h"
 
 #include <raygrid/scene.h>
-
-#include <pthread.h>
 
 enum { RGI_GRIDS = 256 };
 
@@ -28,7 +27,7 @@ struct rg_scene {
     rgi_memory memory;
     rgi_pool *pool;
     const rgi_kernels *kernels;
-    pthread_rwlock_t lock;
+    rgi_lock lock;
     rg_log log;
     void *log_user;
     rgi_slots objects; /* rgi_object */
