@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "any_grid.h"
 
+#include "error.h"
 #include "vec.h"
 
 #include <inttypes.h>
@@ -14,7 +15,8 @@ rg_result rgi_any_grid_init(rgi_any_grid *store, rg_scene *scene, const rg_grid_
     store->log = scene->log;
     store->log_user = scene->log_user;
     if (rgi_any_grid_is_loose(store)) {
-        rgi_lattice_init(&store->lattice, &scene->memory, &scene->objects, offsetof(rgi_object, place));
+        rgi_lattice_init(&store->lattice, &scene->memory, &scene->objects, offsetof(rgi_object, place),
+                         scene->kernels);
         return RG_OK;
     }
     return rgi_grid_init(&store->cells, &scene->memory, config, scene->log, scene->log_user);
@@ -61,7 +63,7 @@ bool rgi_any_grid_need_move(const rgi_any_grid *store, const rgi_object *object,
                             rgi_grid_need *need) {
     if (!rgi_any_grid_is_loose(store))
         return rgi_grid_need_move(&store->cells, object->place.block, bound->lo, bound->hi, need);
-    need->members += !rgi_lattice_has_cell(&store->lattice, bound);
+    need->members += !rgi_lattice_has_cell(&store->lattice, &object->place, bound);
     return false;
 }
 
@@ -80,76 +82,178 @@ static void tell(const rgi_any_grid *store, const char *why) {
     store->log(store->log_user, line);
 }
 
-/* Stores all objects of the grid `index` in `to`; their old places are overwritten. */
-static rg_result fill(rgi_any_grid *to, rg_scene *scene, uint32_t index) {
+/** Objects by their slots. */
+typedef struct slots_of_scene {
+    const rg_scene *scene;
+    const uint32_t *slots;
+} slots_of_scene;
+
+static void bound_of_slot(const void *context, uint64_t i, uint32_t *slot, rgi_bound *bound) {
+    const slots_of_scene *s = context;
+    const rgi_object *object = rgi_scene_object(s->scene, s->slots[i]);
+    rgi_placing p;
+    (void)rgi_place_at(s->scene, object, object->position, &p);
+    *slot = s->slots[i];
+    *bound = p.bound;
+}
+
+rg_result rgi_any_grid_fill(rgi_any_grid *grid, rg_scene *scene, const uint32_t *slots, uint64_t count) {
+    const slots_of_scene source = {scene, slots};
     rg_result result = RG_OK;
-    for (uint32_t slot = 0; slot < scene->objects.used && !result; slot++) {
-        rgi_object *object = rgi_scene_object(scene, slot);
-        rgi_placing p;
-        if (!object->shape || object->grid != index) continue;
-        result = rgi_place_at(scene, object, object->position, &p);
-        if (!result) result = rgi_any_grid_insert(to, scene, slot, &p.bound);
+    if (rgi_any_grid_is_loose(grid)) {
+        result = rgi_lattice_build(&grid->lattice, bound_of_slot, &source, count);
+        grid->count = result ? 0 : count;
+        return result;
+    }
+    for (uint64_t i = 0; i < count && !result; i++) {
+        rgi_bound bound;
+        uint32_t slot;
+        bound_of_slot(&source, i, &slot, &bound);
+        result = rgi_any_grid_insert(grid, scene, slot, &bound);
     }
     return result;
 }
 
-/* Notes where objects are stored, or puts that back. */
-static void keep_places(rg_scene *scene, uint32_t index, rgi_location *places, bool back) {
-    for (uint32_t slot = 0; slot < scene->objects.used; slot++) {
-        rgi_object *object = rgi_scene_object(scene, slot);
-        if (!object->shape || object->grid != index) continue;
-        if (back)
-            object->place = places[slot];
-        else
-            places[slot] = object->place;
+void rgi_any_grid_clear(rgi_any_grid *grid, rg_scene *scene) {
+    const rg_grid_config config = grid->config;
+    uint64_t rebuilds = grid->rebuilds;
+    rgi_any_grid_free(grid);
+    (void)rgi_any_grid_init(grid, scene, &config); /* of an empty lattice can't fail */
+    grid->rebuilds = rebuilds;
+}
+
+/* A grid as it is while another is made beside it. */
+typedef struct old_places {
+    uint32_t *slots;
+    rgi_location *places;
+    uint64_t count;
+} old_places;
+
+static void free_places(rg_scene *scene, old_places *old) {
+    rgi_release(&scene->memory, old->slots, old->count, sizeof *old->slots);
+    rgi_release(&scene->memory, old->places, old->count, sizeof *old->places);
+}
+
+/* Notes the objects of grid `index` and where they are stored. */
+static rg_result note_places(rg_scene *scene, uint32_t index, uint64_t count, old_places *old) {
+    uint64_t at = 0;
+    memset(old, 0, sizeof *old);
+    if (count == 0) return RG_OK;
+    rg_result result = rgi_allocate(&scene->memory, count, sizeof *old->slots, "rebuilding a grid", &old->slots);
+    if (result) return result;
+    result = rgi_allocate(&scene->memory, count, sizeof *old->places, "rebuilding a grid", &old->places);
+    if (result) {
+        rgi_release(&scene->memory, old->slots, count, sizeof *old->slots);
+        return result;
     }
+    old->count = count;
+    for (uint32_t slot = 0; slot < scene->objects.used; slot++) {
+        const rgi_object *object = rgi_scene_object(scene, slot);
+        if (!object->shape || object->grid != index) continue;
+        old->slots[at] = slot;
+        old->places[at++] = object->place;
+    }
+    return RG_OK;
+}
+
+static uint64_t rebuilds_of(const rgi_any_grid *grid) {
+    return rgi_any_grid_is_loose(grid) ? grid->rebuilds : grid->cells.rebuilds;
+}
+
+/* Makes a grid anew, beside the old one. `why` for the log. */
+static rg_result make_anew(rgi_any_grid *grid, rg_scene *scene, uint32_t index, const rg_grid_config *config,
+                           const char *why) {
+    rgi_any_grid new;
+    old_places old;
+    rg_result result = note_places(scene, index, grid->count, &old);
+    if (result) return result;
+    result = rgi_any_grid_init(&new, scene, config);
+    if (!result) {
+        result = rgi_any_grid_fill(&new, scene, old.slots, old.count);
+        if (!result && !rgi_any_grid_is_loose(&new)) result = rgi_grid_rebuild(&new.cells);
+        if (result) rgi_any_grid_free(&new);
+    }
+    for (uint64_t i = 0; i < old.count && result; i++) rgi_scene_object(scene, old.slots[i])->place = old.places[i];
+    free_places(scene, &old);
+    if (result) return result;
+    new.rebuilds = new.cells.rebuilds = rebuilds_of(grid) + 1;
+    rgi_any_grid_free(grid);
+    *grid = new;
+    if (rgi_any_grid_is_loose(grid)) tell(grid, why);
+    return RG_OK;
 }
 
 rg_result rgi_any_grid_configure(rgi_any_grid *store, rg_scene *scene, uint32_t index, const rg_grid_config *config) {
-    if (!rgi_any_grid_is_loose(store) && config->kind != RG_GRID_LOOSE) {
-        rg_result result = rgi_grid_configure(&store->cells, config);
-        if (!result) store->config = *config;
-        return result;
-    }
-    rgi_any_grid new;
-    rgi_location *places = NULL;
-    rg_result result = rgi_any_grid_init(&new, scene, config);
-    if (result) return result;
-    uint32_t slots = scene->objects.used;
-    if (slots) result = rgi_allocate(&scene->memory, slots, sizeof *places, "rebuilding a grid", &places);
-    if (!result) {
-        keep_places(scene, index, places, false);
-        result = fill(&new, scene, index);
-        if (result) keep_places(scene, index, places, true);
-    }
-    rgi_release(&scene->memory, places, slots, sizeof *places);
-    if (result) {
-        rgi_any_grid_free(&new);
-        return result;
-    }
-    if (!rgi_any_grid_is_loose(&new)) {
-        new.cells.rebuilds = (rgi_any_grid_is_loose(store) ? store->rebuilds : store->cells.rebuilds);
-        result = rgi_grid_rebuild(&new.cells);
-    }
-    new.rebuilds = (rgi_any_grid_is_loose(store) ? store->rebuilds : store->cells.rebuilds) + 1;
-    rgi_any_grid_free(store);
-    *store = new;
-    if (rgi_any_grid_is_loose(store)) tell(store, "asked for");
-    return RG_OK;
+    if (rgi_any_grid_is_loose(store) || config->kind == RG_GRID_LOOSE)
+        return make_anew(store, scene, index, config, "configured");
+    rg_result result = rgi_grid_configure(&store->cells, config);
+    if (!result) store->config = *config;
+    return result;
 }
 
 rg_result rgi_any_grid_rebuild(rgi_any_grid *store, rg_scene *scene, uint32_t index) {
     if (!rgi_any_grid_is_loose(store)) return rgi_grid_rebuild(&store->cells);
     const rg_grid_config config = store->config;
-    return rgi_any_grid_configure(store, scene, index, &config);
+    rg_result result = make_anew(store, scene, index, &config, "asked for");
+    if (!result) store->unbounded_at = store->lattice.unbounded_count;
+    return result;
 }
 
-void rgi_any_grid_settle(rgi_any_grid *store, rg_scene *scene) {
-    (void)scene;
-    if (!rgi_any_grid_is_loose(store)) rgi_grid_settle(&store->cells);
+/*
+ * A lattice is made anew only when its frame fits no more: when floats lose the objects' bits because all have
+ * drifted so many radii away from its origin, or when too many are out of its reach. Either takes as many changes as
+ * there are objects, or twice the number that there was.
+ */
+enum { LOOK_AFTER = 256, MANY_UNBOUNDED = 16, FAR_AWAY = 64 };
+
+static const char *why_new_frame(const rgi_any_grid *grid) {
+    const rgi_middle middle = rgi_lattice_middle(&grid->lattice);
+    uint64_t unbounded = grid->lattice.unbounded_count;
+    if (unbounded > MANY_UNBOUNDED && unbounded > 2 * grid->unbounded_at) return "many objects were out of its reach";
+    if (grid->lattice.root && rgi_max_magnitude(middle.centre) > FAR_AWAY * middle.radius)
+        return "the objects have gone far from its origin";
+    return NULL;
 }
 
-void rgi_any_grid_report(const rgi_any_grid *store, rg_grid_report *report) {
+static uint32_t index_of(const rg_scene *scene, const rgi_any_grid *grid) {
+    uint32_t i = 0;
+    while (scene->grids[i].grid != grid) i++;
+    return i;
+}
+
+void rgi_any_grid_settle(rgi_any_grid *store, rg_scene *scene, uint64_t changes) {
+    if (!rgi_any_grid_is_loose(store)) {
+        rgi_grid_settle(&store->cells);
+        return;
+    }
+    if (store->next_look > changes) {
+        store->next_look -= changes;
+        return;
+    }
+    store->next_look = LOOK_AFTER;
+    const char *why = why_new_frame(store);
+    if (!why) return;
+    const rg_grid_config config = store->config;
+    rgi_fail_quietly(true);
+    rg_result result = make_anew(store, scene, index_of(scene, store), &config, why);
+    rgi_fail_quietly(false);
+    /* Without memory it goes on as it is; a new frame that fits no better is not asked for soon again. */
+    store->next_look = LOOK_AFTER + store->count;
+    if (!result) store->unbounded_at = store->lattice.unbounded_count;
+}
+
+/* Those without a cell, but for the infinite, are in the logical box too. */
+static void hold_unbounded(const rgi_any_grid *grid, const rg_scene *scene, double lo[3], double hi[3]) {
+    for (uint32_t i = 0; i < grid->lattice.unbounded_count; i++) {
+        const rgi_object *object = rgi_scene_object(scene, grid->lattice.unbounded[i]);
+        rgi_placing p;
+        (void)rgi_place_at(scene, object, object->position, &p);
+        if (rgi_max(rgi_max_magnitude(p.bound.lo), rgi_max_magnitude(p.bound.hi)) < INFINITY)
+            rgi_grow(lo, hi, p.bound.lo, p.bound.hi);
+    }
+}
+
+void rgi_any_grid_report(const rgi_any_grid *store, const rg_scene *scene, rg_grid_report *report) {
     if (!rgi_any_grid_is_loose(store)) {
         rgi_grid_report(&store->cells, report);
         return;
@@ -157,6 +261,7 @@ void rgi_any_grid_report(const rgi_any_grid *store, rg_grid_report *report) {
     memset(report, 0, sizeof *report);
     report->kind = RG_GRID_LOOSE;
     rgi_lattice_box(&store->lattice, report->logical_lo, report->logical_hi);
+    hold_unbounded(store, scene, report->logical_lo, report->logical_hi);
     report->objects = store->count;
     report->entries = store->lattice.count;
     report->unbounded = store->lattice.unbounded_count;

@@ -14,7 +14,9 @@ typedef struct rgi_any_grid {
     rgi_grid cells;      /* the paper's kinds */
     rgi_lattice lattice; /* RG_GRID_LOOSE */
     uint64_t count;
-    uint64_t rebuilds; /* of the lattice */
+    uint64_t rebuilds;     /* of the lattice */
+    uint64_t next_look;    /* changes until its frame is looked at again */
+    uint64_t unbounded_at; /* objects without a cell when it was last made */
 } rgi_any_grid;
 
 /** An empty one for a configuration that was read. RG_OUT_OF_MEMORY. */
@@ -30,6 +32,11 @@ static inline bool rgi_any_grid_is_loose(const rgi_any_grid *store) {
  *  changed. */
 rg_result rgi_any_grid_insert(rgi_any_grid *store, rg_scene *scene, uint32_t slot, const rgi_bound *bound);
 rg_result rgi_any_grid_move(rgi_any_grid *store, rgi_object *object, uint32_t slot, const rgi_bound *bound);
+/** Stores objects whose records are filled in an empty grid. On failure the grid is to be freed or cleared. */
+rg_result rgi_any_grid_fill(rgi_any_grid *store, rg_scene *scene, const uint32_t *slots, uint64_t count);
+
+/** Makes a loose grid empty. */
+void rgi_any_grid_clear(rgi_any_grid *store, rg_scene *scene);
 void rgi_any_grid_remove(rgi_any_grid *store, rgi_object *object, uint32_t slot);
 
 /** What changes to come will take, as rgi_grid_need. */
@@ -40,13 +47,13 @@ bool rgi_any_grid_need_move(const rgi_any_grid *store, const rgi_object *object,
 /** After it moves can't fail. Inserts into a lattice still may: their sum is not known before. */
 rg_result rgi_any_grid_reserve(rgi_any_grid *store, const rgi_grid_need *need);
 
-/** After changes: applies the rules by which it is rebuilt. */
-void rgi_any_grid_settle(rgi_any_grid *store, rg_scene *scene);
+/** After so many changes: applies the rules by which it is rebuilt. */
+void rgi_any_grid_settle(rgi_any_grid *store, rg_scene *scene, uint64_t changes);
 
 /** RG_OUT_OF_MEMORY: nothing has changed. */
 rg_result rgi_any_grid_rebuild(rgi_any_grid *store, rg_scene *scene, uint32_t index);
 rg_result rgi_any_grid_configure(rgi_any_grid *store, rg_scene *scene, uint32_t index, const rg_grid_config *config);
 
-void rgi_any_grid_report(const rgi_any_grid *store, rg_grid_report *report);
+void rgi_any_grid_report(const rgi_any_grid *store, const rg_scene *scene, rg_grid_report *report);
 
 #endif

@@ -13,6 +13,8 @@
 #include "lattice.h"
 #include "object.h"
 
+typedef struct rgi_kernels rgi_kernels;
+
 /** Entries of a beam's stack; what goes deeper is walked by recursion. */
 enum { RGI_STACK = 256 };
 
@@ -111,8 +113,10 @@ float rgi_beam_above(const rgi_beam_scale *scale, float pad, double t);
 float rgi_beam_below(const rgi_beam_scale *scale, float pad, double t);
 
 /** The kernels of one instruction set. */
-typedef struct rgi_kernels {
+struct rgi_kernels {
     const char *name;
+    /** Makes a box hold all of a block. */
+    void (*unite_block)(const rgi_block *block, float lo[3], float hi[3]);
     /** Scales the rays as rgi_ray_init; false if one is invalid, or extreme: then they are to be taken one by one. */
     bool (*prepare)(rgi_bundle *bundle);
     /** Brings prepared rays into the frame of a lattice. */
@@ -128,7 +132,7 @@ typedef struct rgi_kernels {
     void (*trace_some)(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count);
     /** Takes a packet through. What is certain at its end has not been asked. */
     void (*trace_packet)(const rgi_lattice *lattice, rgi_packet *packet);
-} rgi_kernels;
+};
 
 extern const rgi_kernels rgi_kernels_portable;
 #if defined(__x86_64__)

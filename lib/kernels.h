@@ -86,6 +86,20 @@ RGI_INLINE uint32_t meet_block(const rgi_block *block, const rgi_beam *b, float 
            (block->kind & RGI_BOXES ? meet_boxes(lanes, room, b, t) : meet_balls(lanes, room, b, t));
 }
 
+static void unite_block(const rgi_block *block, float lo[3], float hi[3]) {
+    uint32_t room = rgi_block_room(block->kind), used = used_lanes(block);
+    const float *lanes = rgi_block_lanes(block, room);
+    bool boxes = block->kind & RGI_BOXES;
+    for (int a = 0; a < 3; a++) {
+        f16 at = f16_load(lanes + (uint32_t)a * room), other = f16_load(lanes + (boxes ? a + 3u : 3u) * room);
+        f16 least = boxes ? at : f16_sub(at, other), most = boxes ? other : f16_add(at, other);
+        float low = f16_least(f16_pick(used, least, f16_set(INFINITY)));
+        float high = f16_most(f16_pick(used, most, f16_set(-INFINITY)));
+        if (low < lo[a]) lo[a] = low;
+        if (high > hi[a]) hi[a] = high;
+    }
+}
+
 /* ------------------------------------------------------------------------------------------- rays on their own */
 
 /* Asks the objects that wait, the nearest first. Returns true if the walk is to end. */
@@ -338,6 +352,9 @@ static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *m
     return true;
 }
 
+/* Squares of less underflow: balls as small are always asked. */
+#define SMALLEST 0x1p-50f
+
 /* One ball, all rays. Returns whether t_hi of some ray may have changed. */
 RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_t slot, const void *object) {
     f16 to[3], along = f16_set(0), square = f16_set(0), pad = f16_load(p->pad);
@@ -366,7 +383,7 @@ RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_
         f16 latest = f16_sub(along, f16_sqrt(f16_max(within, zero)));
         latest = f16_add(f16_fma(way, f16_set(0x1p-18f), latest), f16_mul(pad, f16_set(4)));
         f16 t_lo = f16_load(p->t_lo);
-        certain = met & f16_le(zero, within) & f16_le(zero, least) & f16_le(f16_load(p->t_min), first);
+        certain = met & f16_le(zero, within) & f16_le(f16_set(SMALLEST), least) & f16_le(f16_load(p->t_min), first);
         certain &= ~f16_le(t_lo, latest);
         if (certain) __builtin_prefetch(object);
         if (p->any) {
@@ -477,5 +494,5 @@ static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
     }
 }
 
-const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), prepare,    to_frame,    bound, meet,
-                                                       trace_one,          trace_some, trace_packet};
+const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
+    RGI_TEXT(RGI_NAME), unite_block, prepare, to_frame, bound, meet, trace_one, trace_some, trace_packet};

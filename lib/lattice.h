@@ -119,6 +119,7 @@ void rgi_arena_give(rgi_arena *arena, uint32_t kind, rgi_ref ref);
 
 typedef struct rgi_lattice {
     rgi_memory *memory;
+    const struct rgi_kernels *kernels;
     rgi_slots *objects;  /* records that start with an rgi_location */
     size_t place_offset; /* of the place in such a record */
     rgi_arena arena;
@@ -132,22 +133,44 @@ typedef struct rgi_lattice {
     uint64_t unbounded_room;
 } rgi_lattice;
 
-void rgi_lattice_init(rgi_lattice *lattice, rgi_memory *memory, rgi_slots *objects, size_t place_offset);
+void rgi_lattice_init(rgi_lattice *lattice, rgi_memory *memory, rgi_slots *objects, size_t place_offset,
+                      const struct rgi_kernels *kernels);
 void rgi_lattice_free(rgi_lattice *lattice);
 
 /** Stores an object. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED: nothing has changed. Cost: constant, but for the depth. */
 rg_result rgi_lattice_insert(rgi_lattice *lattice, uint32_t slot, const rgi_bound *bound);
 
+/** Gives the slot and the bounds of the i-th of many objects. */
+typedef void (*rgi_bound_source)(const void *context, uint64_t i, uint32_t *slot, rgi_bound *bound);
+
 /**
- * Gives an object new bounds. It can't fail: without memory for a better place it stays where it is stored, and boxes
- * grow around it. (Only from and to the unbounded it may: RG_OUT_OF_MEMORY, nothing has changed.)
+ * Stores many objects in an empty lattice. On failure it is to be freed. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED. Cost:
+ * linear, for each object some 100 bytes while it runs.
+ */
+rg_result rgi_lattice_build(rgi_lattice *lattice, rgi_bound_source source, const void *context, uint64_t count);
+
+/**
+ * Gives an object new bounds. Without memory for a better place it stays where it is stored, and boxes grow around
+ * it. Only where no cell or block of its can hold it any more it may fail: RG_OUT_OF_MEMORY, nothing has changed.
  */
 rg_result rgi_lattice_move(rgi_lattice *lattice, uint32_t slot, const rgi_bound *bound);
 
+/** Whether a ball at a world position would be stored in a cell. */
+bool rgi_lattice_reaches(const rgi_lattice *lattice, const double position[3], double radius);
+
+/** Asks for the block of an object ahead of a move. */
+void rgi_lattice_fetch(const rgi_lattice *lattice, const rgi_location *place);
+
+/**
+ * The quick way of a move: gives a ball that has a cell, and keeps its radius, a new centre that the lattice reaches,
+ * if it stays in its cell. False: nothing has been done, and rgi_lattice_move is to be called.
+ */
+bool rgi_lattice_step(rgi_lattice *lattice, const rgi_location *place, const double centre[3], double radius);
+
 void rgi_lattice_remove(rgi_lattice *lattice, uint32_t slot);
 
-/** Whether what has these bounds would be stored in a cell. */
-bool rgi_lattice_has_cell(const rgi_lattice *lattice, const rgi_bound *bound);
+/** Whether an object can get these bounds and keep a cell even without memory: others may join the unbounded. */
+bool rgi_lattice_has_cell(const rgi_lattice *lattice, const rgi_location *place, const rgi_bound *bound);
 
 /** Makes room for so many more that have no cell. */
 rg_result rgi_lattice_reserve(rgi_lattice *lattice, uint64_t unbounded);

@@ -111,7 +111,7 @@ rg_result rg_grid_stats(rg_scene *scene, rg_grid id, rg_grid_report *report) {
     if (!scene) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL");
     rgi_scene_begin_read(scene, &frame);
     rg_result result = rgi_scene_find_grid(scene, id, &index);
-    if (!result) rgi_any_grid_report(scene->grids[index].grid, &r);
+    if (!result) rgi_any_grid_report(scene->grids[index].grid, scene, &r);
     rgi_scene_end_read(scene, &frame);
     return result ? result : rgi_struct_write(&r, sizeof r, REPORT_LEAST, report, "rg_grid_report");
 }

@@ -13,7 +13,11 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { INSERT_LEAST = sizeof(rg_insert_views), POSES_LEAST = sizeof(rg_pose_views) };
+enum {
+    INSERT_LEAST = sizeof(rg_insert_views),
+    POSES_LEAST = sizeof(rg_pose_views),
+    BULK = 64 /* so many objects are built into an empty grid at once */
+};
 
 /* The i-th of views of poses. What is not given: as `object` has it, or as rg_pose_at if there is no object. */
 static rg_result place_view(const rg_scene *scene, const rg_pose_views *views, uint64_t i, const rg_shape *shape,
@@ -104,28 +108,60 @@ static rg_result insert_nth(rg_scene *scene, const rg_insert_views *views, uint6
     return result ? result : rgi_insert_one(scene, shape, &p, mask, grid, id);
 }
 
-/* What a lattice takes is not known before it is taken: where memory ends on the way, what was inserted goes again.
- */
+/* One after another. What a lattice takes is not known before it is taken: where memory ends on the way, what was
+ * inserted goes again. */
+static rg_result insert_each(rg_scene *scene, const rg_insert_views *views, uint64_t count, uint32_t grid,
+                             rg_object *ids) {
+    for (uint64_t i = 0; i < count; i++) {
+        rg_result result = insert_nth(scene, views, i, grid, &ids[i]);
+        if (!result) continue;
+        while (i > 0) {
+            rg_shape *shape = rgi_remove_one(scene, RG_OBJECT_SLOT(ids[--i]));
+            rg_shape_release(&shape);
+        }
+        return result;
+    }
+    return RG_OK;
+}
+
+/* All at once into an empty lattice. */
+static rg_result insert_bulk(rg_scene *scene, const rg_insert_views *views, uint64_t count, uint32_t grid,
+                             rg_object *ids) {
+    uint32_t *slots;
+    rg_result result = rgi_allocate(&scene->memory, count, sizeof *slots, "inserting many objects", &slots);
+    if (result) return result;
+    for (uint64_t i = 0; i < count; i++) {
+        rgi_placing p;
+        rg_shape *shape = shape_at(views, i);
+        (void)place_view(scene, views->poses, i, shape, NULL, &p); /* checked before */
+        slots[i] = rgi_slots_take(&scene->objects);
+        rgi_fill_object(scene, slots[i], shape, &p, (uint32_t)rgi_load_integer(&views->mask, i, UINT32_MAX), grid);
+        ids[i] = rgi_object_id(rgi_scene_object(scene, slots[i]), slots[i]);
+    }
+    result = rgi_any_grid_fill(scene->grids[grid].grid, scene, slots, count);
+    if (result) rgi_any_grid_clear(scene->grids[grid].grid, scene);
+    for (uint64_t i = count; i > 0 && result; i--) {
+        rg_shape *shape = rgi_empty_object(scene, slots[i - 1]);
+        rgi_slots_trim(&scene->objects);
+        rg_shape_release(&shape);
+    }
+    rgi_release(&scene->memory, slots, count, sizeof *slots);
+    return result;
+}
+
 static rg_result insert_all(rg_scene *scene, const rg_insert_views *views, uint64_t count, const rg_output *objects) {
     uint32_t grid;
-    uint64_t done = 0;
     rg_object *ids = NULL;
     rg_result result = rgi_scene_find_grid(scene, views->grid, &grid);
     if (!result) result = prepare_insert(scene, views, count, grid);
     if (!result && count) result = rgi_allocate(&scene->memory, count, sizeof *ids, "inserting many objects", &ids);
     if (result) return result;
-    while (done < count && !result) {
-        result = insert_nth(scene, views, done, grid, &ids[done]);
-        done += !result;
-    }
-    if (result) {
-        while (done > 0) {
-            rg_shape *shape = rgi_remove_one(scene, RG_OBJECT_SLOT(ids[--done]));
-            rg_shape_release(&shape);
-        }
-    } else {
+    const rgi_any_grid *store = scene->grids[grid].grid;
+    bool bulk = rgi_any_grid_is_loose(store) && store->count == 0 && count >= BULK;
+    result = bulk ? insert_bulk(scene, views, count, grid, ids) : insert_each(scene, views, count, grid, ids);
+    if (!result) {
         for (uint64_t i = 0; i < count && objects; i++) rgi_store_integer(objects, i, ids[i]);
-        rgi_any_grid_settle(scene->grids[grid].grid, scene);
+        rgi_any_grid_settle(scene->grids[grid].grid, scene, count);
     }
     rgi_release(&scene->memory, ids, count, sizeof *ids);
     return result;
@@ -164,9 +200,9 @@ static bool is_touched(const touched *t, uint32_t grid) {
     return t->bits[grid / 32] >> grid % 32 & 1;
 }
 
-static void settle(rg_scene *scene, const touched *t) {
+static void settle(rg_scene *scene, const touched *t, uint64_t count) {
     for (uint32_t i = 0; i < scene->grid_places; i++) {
-        if (is_touched(t, i)) rgi_any_grid_settle(scene->grids[i].grid, scene);
+        if (is_touched(t, i)) rgi_any_grid_settle(scene->grids[i].grid, scene, count);
     }
 }
 
@@ -260,16 +296,69 @@ static rg_result make_move(rg_scene *scene, const rg_pose_views *poses, uint64_t
     return result;
 }
 
+/* ------------------------------------------------------------------------------------------ balls to new places */
+
+/* Objects, and then their blocks, are fetched so many ahead of the one that is moved. */
+enum { AHEAD = 16 };
+
+/* Whether all objects are balls in lattices and all positions such that moving them can't fail. An id that is none of
+ * the scene's says no, too: the long way finds it again and names it. */
+static bool are_quick(const rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count) {
+    if (poses->column[0].x || poses->scale.data) return false;
+    for (uint64_t i = 0; i < count; i++) {
+        rg_object id = rgi_load_integer(objects, i, 0);
+        uint32_t slot = RG_OBJECT_SLOT(id);
+        double position[3];
+        if (i + AHEAD < count) {
+            uint32_t later = RG_OBJECT_SLOT(rgi_load_integer(objects, i + AHEAD, 0));
+            if (later < scene->objects.used) __builtin_prefetch(rgi_scene_object(scene, later));
+        }
+        if (slot >= scene->objects.used) return false;
+        const rgi_object *object = rgi_scene_object(scene, slot);
+        rgi_load3(&poses->position, i, position);
+        if (!object->shape || object->generation != id >> 32 || !rgi_is_quick(scene, object, position)) return false;
+    }
+    return true;
+}
+
+static void move_quickly(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count,
+                         touched *grids) {
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t slot = RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0));
+        rgi_object *object = rgi_scene_object(scene, slot);
+        double position[3];
+        if (i + 2 * AHEAD < count)
+            __builtin_prefetch(rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i + 2 * AHEAD, 0))));
+        if (i + AHEAD < count) {
+            const rgi_object *later =
+                rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i + AHEAD, 0)));
+            rgi_lattice_fetch(&scene->grids[later->grid].grid->lattice, &later->place);
+        }
+        rgi_load3(&poses->position, i, position);
+        touch(grids, object->grid);
+        if (rgi_step(scene, object, position)) continue;
+        rgi_placing p;
+        (void)rgi_place_at(scene, object, position, &p);
+        (void)rgi_move_one(scene, slot, &p);
+    }
+}
+
 static rg_result move_all(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count) {
     move_need need;
     checked_move *moves = NULL;
     if (count == 0) return RG_OK;
+    if (are_quick(scene, objects, poses, count)) {
+        memset(&need.touched, 0, sizeof need.touched);
+        move_quickly(scene, objects, poses, count, &need.touched);
+        settle(scene, &need.touched, count);
+        return RG_OK;
+    }
     rg_result result = rgi_allocate(&scene->memory, count, sizeof *moves, "moving many objects", &moves);
     if (result) return result;
     result = prepare_move(scene, objects, poses, count, moves, &need);
     for (uint64_t i = 0; i < count && !result; i++) result = make_move(scene, poses, i, &moves[i]);
     rgi_release(&scene->memory, moves, count, sizeof *moves);
-    if (!result) settle(scene, &need.touched);
+    if (!result) settle(scene, &need.touched, count);
     return result;
 }
 
@@ -312,7 +401,7 @@ static rg_result remove_all(rg_scene *scene, const rg_input *objects, uint64_t c
         rg_shape *shape = rgi_remove_one(scene, slot);
         rg_shape_release(&shape);
     }
-    settle(scene, &grids);
+    settle(scene, &grids, count);
     return RG_OK;
 }
 

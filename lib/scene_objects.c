@@ -97,6 +97,33 @@ void rgi_set_pose(rg_scene *scene, rgi_object *object, const rgi_placing *p) {
     set_linear(scene, object, p);
 }
 
+void rgi_fill_object(rg_scene *scene, uint32_t slot, rg_shape *shape, const rgi_placing *p, uint32_t mask,
+                     uint32_t grid) {
+    rgi_object *object = rgi_scene_object(scene, slot);
+    if (object->generation == 0) object->generation = 1;
+    rg_shape_retain(shape);
+    object->shape = shape;
+    object->linear = RGI_NONE;
+    object->mask = mask;
+    scene->masked |= mask != UINT32_MAX;
+    object->grid = grid;
+    rgi_set_pose(scene, object, p);
+    scene->object_count++;
+}
+
+rg_shape *rgi_empty_object(rg_scene *scene, uint32_t slot) {
+    rgi_object *object = rgi_scene_object(scene, slot);
+    rg_shape *shape = object->shape;
+    if (object->linear != RGI_NONE) rgi_slots_give(&scene->linears, object->linear);
+    object->shape = NULL;
+    scene->object_count--;
+    if (object->generation < UINT32_MAX) {
+        object->generation++;
+        rgi_slots_give(&scene->objects, slot);
+    }
+    return shape;
+}
+
 rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *p, uint32_t mask, uint32_t grid,
                          rg_object *id) {
     rg_result result = rgi_slots_reserve(&scene->objects, 1);
@@ -110,15 +137,7 @@ rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *p,
     const rgi_location place = object->place;
     (void)rgi_slots_take(&scene->objects);
     object->place = place;
-    if (object->generation == 0) object->generation = 1;
-    rg_shape_retain(shape);
-    object->shape = shape;
-    object->linear = RGI_NONE;
-    object->mask = mask;
-    scene->masked |= mask != UINT32_MAX;
-    object->grid = grid;
-    rgi_set_pose(scene, object, p);
-    scene->object_count++;
+    rgi_fill_object(scene, slot, shape, p, mask, grid);
     *id = rgi_object_id(object, slot);
     return RG_OK;
 }
@@ -134,16 +153,8 @@ rg_result rgi_move_one(rg_scene *scene, uint32_t slot, const rgi_placing *p) {
 
 rg_shape *rgi_remove_one(rg_scene *scene, uint32_t slot) {
     rgi_object *object = rgi_scene_object(scene, slot);
-    rg_shape *shape = object->shape;
     rgi_any_grid_remove(scene->grids[object->grid].grid, object, slot);
-    if (object->linear != RGI_NONE) rgi_slots_give(&scene->linears, object->linear);
-    object->shape = NULL;
-    scene->object_count--;
-    if (object->generation < UINT32_MAX) {
-        object->generation++;
-        rgi_slots_give(&scene->objects, slot);
-    }
-    return shape;
+    return rgi_empty_object(scene, slot);
 }
 
 rg_result rg_scene_insert(rg_scene *scene, rg_shape *shape, const rg_pose *pose, rg_object *out) {
@@ -156,7 +167,7 @@ rg_result rg_scene_insert(rg_scene *scene, rg_shape *shape, const rg_pose *pose,
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_insert_one(scene, shape, &p, UINT32_MAX, 0, &id);
-    if (!result) rgi_any_grid_settle(scene->grids[0].grid, scene);
+    if (!result) rgi_any_grid_settle(scene->grids[0].grid, scene, 1);
     if (!result && out) *out = id;
     return rgi_scene_end_change(scene, &frame, result);
 }
@@ -167,10 +178,11 @@ static rg_result move_by_id(rg_scene *scene, rg_object id, const double position
     rg_result result = rgi_find_object(scene, id, &slot);
     if (result) return result;
     rgi_object *object = rgi_scene_object(scene, slot);
+    if (!pose && rgi_is_quick(scene, object, position) && rgi_step(scene, object, position)) return RG_OK;
     result = pose ? rgi_place(object->shape, position, pose->linear, pose->scale, &p)
                   : rgi_place_at(scene, object, position, &p);
     if (!result) result = rgi_move_one(scene, slot, &p);
-    if (!result) rgi_any_grid_settle(scene->grids[object->grid].grid, scene);
+    if (!result) rgi_any_grid_settle(scene->grids[object->grid].grid, scene, 1);
     return result;
 }
 
@@ -180,6 +192,19 @@ rg_result rg_scene_move(rg_scene *scene, rg_object id, const rg_pose *pose) {
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     return rgi_scene_end_change(scene, &frame, move_by_id(scene, id, pose->position, pose));
+}
+
+bool rgi_is_quick(const rg_scene *scene, const rgi_object *object, const double position[3]) {
+    const rgi_any_grid *grid = scene->grids[object->grid].grid;
+    return object->linear == RGI_NONE && object->shape->kind == RG_SHAPE_SPHERE && rgi_any_grid_is_loose(grid) &&
+           object->place.block != RGI_NONE && rgi_lattice_reaches(&grid->lattice, position, object->reach);
+}
+
+bool rgi_step(rg_scene *scene, rgi_object *object, const double position[3]) {
+    rgi_lattice *lattice = &scene->grids[object->grid].grid->lattice;
+    if (!rgi_lattice_step(lattice, &object->place, position, object->reach)) return false;
+    rgi_copy(position, object->position);
+    return true;
 }
 
 rg_result rg_scene_move_to(rg_scene *scene, rg_object id, const double position[3]) {
@@ -212,7 +237,7 @@ rg_result rg_scene_remove(rg_scene *scene, rg_object id) {
     if (!result) {
         uint32_t grid = rgi_scene_object(scene, slot)->grid;
         rg_shape *shape = rgi_remove_one(scene, slot);
-        rgi_any_grid_settle(scene->grids[grid].grid, scene);
+        rgi_any_grid_settle(scene->grids[grid].grid, scene, 1);
         rg_shape_release(&shape);
     }
     return rgi_scene_end_change(scene, &frame, result);

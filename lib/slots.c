@@ -48,3 +48,10 @@ void rgi_slots_give(rgi_slots *slots, uint32_t index) {
     slots->free_first = index;
     slots->free_count++;
 }
+
+void rgi_slots_trim(rgi_slots *slots) {
+    if (slots->free_count == 0 || slots->free_first != slots->used - 1) return;
+    memcpy(&slots->free_first, rgi_slots_at(slots, slots->free_first), sizeof slots->free_first);
+    slots->free_count--;
+    slots->used--;
+}

@@ -46,6 +46,9 @@ static inline uint32_t rgi_slots_next(const rgi_slots *slots) {
 /** Takes a record: the one freed last, else a new one, which is all zeros. Must have been reserved. */
 uint32_t rgi_slots_take(rgi_slots *slots);
 
+/** Takes back that the last record was ever taken, if it is the one given back last. */
+void rgi_slots_trim(rgi_slots *slots);
+
 /** Gives a record back. Its first four bytes are the list's from now on; the rest stays as it is. */
 void rgi_slots_give(rgi_slots *slots, uint32_t index);
 

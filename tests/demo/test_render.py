@@ -130,7 +130,7 @@ class Render(unittest.TestCase):
     def test_objects_leave_the_box(self):
         """Over many frames the swarm spreads over tiles of the grid and makes it rebuild, and nothing is wrong."""
         gltf = self.save('cube.gltf', gltf_files.cube(gltf_files.UINT).text())
-        rows = self.check_table(self.run_demo(gltf, 'out', frames=60), 60)
+        rows = self.check_table(self.run_demo(gltf, 'out', '--grid', 'hierarchical', frames=60), 60)
         self.assertGreater(max(int(row[9]) for row in rows), 1)
         self.assertGreater(int(rows[-1][8]), 0)
 
