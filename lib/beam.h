@@ -84,6 +84,7 @@ typedef struct rgi_packet {
     float t_first[RGI_PACKET]; /* and from below */
     float t_lo[RGI_PACKET], t_hi[RGI_PACKET];
     float best[RGI_PACKET];                       /* slots, as bits, of the hits that are certain but not asked yet */
+    uint32_t found;                               /* bits of the rays that have asked and found something */
     uint32_t certain;                             /* bits of the rays that have one */
     uint32_t active;                              /* bits of the rays that are still on their way */
     bool any;                                     /* the first hit ends a ray */
@@ -92,6 +93,7 @@ typedef struct rgi_packet {
     /** As rgi_beam; gives the bounds of the nearest hit so far, in the frame. Returns true to end the ray. */
     bool (*ask)(struct rgi_packet *packet, uint32_t ray, uint32_t slot);
     void *context;
+    const rgi_bundle *bundle;
     uint32_t visits;
     /* the planes: x[across] - slope * x[axis], for rays between lo and hi */
     uint32_t axis, across[2];

@@ -23,8 +23,9 @@ typedef struct rgi_bundle {
 typedef struct rgi_meeting {
     double centre[3][RGI_PACKET] __attribute__((aligned(64)));
     double radius[RGI_PACKET];
-    double t[RGI_PACKET]; /* out: in units of the direction that the caller gave */
-    uint32_t right;       /* out: bits of the lanes where the ball is met from outside, in range */
+    double scaled_t[RGI_PACKET]; /* out: in units of the scaled direction */
+    double t[RGI_PACKET];        /* out: in units of the direction that the caller gave */
+    uint32_t met;                /* out: bits of the lanes where the ball is met in range */
 } rgi_meeting;
 
 #endif

@@ -292,15 +292,51 @@ static void settle_all(rgi_packet *p, uint32_t rays, uint32_t slot) {
     for (; rays; rays &= rays - 1) settle(p, (uint32_t)__builtin_ctz(rays), slot);
 }
 
-/* Slopes against the axis may differ by this much, and the planes that bound the rays be so far apart, in radii of
- * all that is stored: beyond it what is passed over for one ray hardly ever is for all. */
+/*
+ * The same for a ball that some rays may meet and are not certain of, as those that begin on its surface: it is met
+ * with all at once. Rays that have met nothing so far need no more; others compare.
+ */
+static void settle_ball(const rgi_lattice *lattice, rgi_packet *p, uint32_t rays, uint32_t slot) {
+    rgi_meeting m;
+    float bits;
+    if (p->ask_all || !(rays & (rays - 1))) {
+        settle_all(p, rays, slot);
+        return;
+    }
+    const rgi_object *object = rgi_slots_at(lattice->objects, slot);
+    for (int a = 0; a < 3; a++) LANES(i) m.centre[a][i] = object->position[a];
+    LANES(i) m.radius[i] = object->reach;
+    meet(p->bundle, &m);
+    uint32_t met = rays & m.met, compare = met & (p->certain | p->found);
+    p->certain |= met & ~compare;
+    if (p->any) {
+        p->certain |= met;
+        p->active &= ~met;
+        return;
+    }
+    settle_all(p, compare, slot);
+    memcpy(&bits, &slot, sizeof bits);
+    for (met &= ~compare; met; met &= met - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(met);
+        const rgi_beam_scale scale = {p->shift[i], p->length[i]};
+        p->best[i] = bits;
+        p->t_lo[i] = rgi_beam_below(&scale, p->pad[i], m.scaled_t[i]);
+        p->t_hi[i] = rgi_beam_above(&scale, p->pad[i], m.scaled_t[i]);
+    }
+}
+
+/* Slopes against the axis may differ by this much, and the rays begin, or end, so far apart, in radii of all that is
+ * stored: beyond it what is passed over for one ray hardly ever is for all. */
 #define SLOPES 0.15f
 #define APART 0.1f
 
 /* Slopes are widened by what rounding a direction and its inverse can change of them. */
 #define SLOPE_PAD 0x1p-20f
 
-/* The two planes across one axis. */
+/*
+ * The two planes across one axis. They go through the ends of the rays that lie closer together: where they begin, as
+ * those from a camera, or where they end, as those to a light; and open towards the other ends.
+ */
 RGI_INLINE bool bound_slopes(rgi_packet *p, uint32_t which, f16 per_way, f16 pad, float radius) {
     const uint32_t a = p->across[which], k = p->axis;
     /* Per length of way along the axis, whichever its sense. */
@@ -309,16 +345,26 @@ RGI_INLINE bool bound_slopes(rgi_packet *p, uint32_t which, f16 per_way, f16 pad
     if (!(most - least <= SLOPES)) return false;
     least -= SLOPE_PAD * (1 + fabsf(least));
     most += SLOPE_PAD * (1 + fabsf(most));
-    p->slope_lo[which] = p->sense * least;
-    p->slope_hi[which] = p->sense * most;
+    f16 o = f16_load(p->origin[a]), along = f16_load(p->origin[k]), t = f16_load(p->t_hi);
+    f16 end = f16_fma(t, f16_load(p->direction[a]), o);
+    float begin_apart = f16_most(o) - f16_least(o), end_apart = f16_most(end) - f16_least(end);
+    bool backward = end_apart < begin_apart;
+    if (backward) {
+        o = end;
+        along = f16_fma(t, f16_load(p->direction[k]), along);
+        pad = f16_fma(t, f16_set(0x1p-20f), pad);
+        begin_apart = end_apart;
+    }
+    if (!(begin_apart <= APART * radius)) return false;
+    p->slope_lo[which] = p->sense * (backward ? most : least);
+    p->slope_hi[which] = p->sense * (backward ? least : most);
     p->far_of_hi[which] = end_of(k, p->slope_hi[which] >= 0);
     p->far_of_lo[which] = end_of(k, p->slope_lo[which] < 0);
-    f16 o = f16_load(p->origin[a]), along = f16_load(p->origin[k]);
     p->lo[which] = f16_least(f16_sub(f16_fma(f16_set(-p->slope_lo[which]), along, o), pad));
     p->hi[which] = f16_most(f16_add(f16_fma(f16_set(-p->slope_hi[which]), along, o), pad));
-    p->norm_lo[which] = (1 + 0x1p-20f) * sqrtf(1 + least * least);
-    p->norm_hi[which] = (1 + 0x1p-20f) * sqrtf(1 + most * most);
-    return p->hi[which] - p->lo[which] <= APART * radius;
+    p->norm_lo[which] = (1 + 0x1p-20f) * sqrtf(1 + p->slope_lo[which] * p->slope_lo[which]);
+    p->norm_hi[which] = (1 + 0x1p-20f) * sqrtf(1 + p->slope_hi[which] * p->slope_hi[which]);
+    return true;
 }
 
 static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *middle) {
@@ -356,7 +402,7 @@ static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *m
 #define SMALLEST 0x1p-50f
 
 /* One ball, all rays. Returns whether t_hi of some ray may have changed. */
-RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_t slot, const void *object) {
+RGI_INLINE bool meet_ball(const rgi_lattice *lattice, rgi_packet *p, const float centre[3], float r, uint32_t slot) {
     f16 to[3], along = f16_set(0), square = f16_set(0), pad = f16_load(p->pad);
     for (int a = 0; a < 3; a++) {
         to[a] = f16_sub(f16_set(centre[a]), f16_load(p->origin[a]));
@@ -385,7 +431,7 @@ RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_
         f16 t_lo = f16_load(p->t_lo);
         certain = met & f16_le(zero, within) & f16_le(f16_set(SMALLEST), least) & f16_le(f16_load(p->t_min), first);
         certain &= ~f16_le(t_lo, latest);
-        if (certain) __builtin_prefetch(object);
+        if (certain) __builtin_prefetch(rgi_slots_at(lattice->objects, slot));
         if (p->any) {
             p->certain |= certain;
             p->active &= ~certain;
@@ -398,7 +444,7 @@ RGI_INLINE bool meet_ball(rgi_packet *p, const float centre[3], float r, uint32_
             p->certain |= certain;
         }
     }
-    settle_all(p, met & ~certain, slot);
+    if (met & ~certain) settle_ball(lattice, p, met & ~certain, slot);
     return true;
 }
 
@@ -450,8 +496,7 @@ RGI_INLINE void visit_block(const rgi_lattice *lattice, rgi_packet *p, packet_st
             changed |= meet_box(p, f + i, f + 3 * room + i, room, block->slots[i]);
         } else {
             const float centre[3] = {f[i], f[room + i], f[2 * room + i]};
-            const void *object = rgi_slots_at(lattice->objects, block->slots[i]);
-            changed |= meet_ball(p, centre, f[3 * room + i], block->slots[i], object);
+            changed |= meet_ball(lattice, p, centre, f[3 * room + i], block->slots[i]);
         }
     }
     if (!changed) return;

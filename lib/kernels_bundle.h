@@ -63,8 +63,8 @@ static bool prepare(rgi_bundle *b) {
 /* Where the rays meet balls: rgi_object_intersect with rgi_sphere_intersect. What is left out there, a first test
  * that most objects fail, changes no answer. */
 static void meet(const rgi_bundle *b, rgi_meeting *m) {
-    double found[RGI_PACKET], in[3][RGI_PACKET], shift[RGI_PACKET], along[RGI_PACKET];
-    int right[RGI_PACKET];
+    double in[3][RGI_PACKET], shift[RGI_PACKET], along[RGI_PACKET];
+    int met[RGI_PACKET];
     LANES(i) {
         double oo = 0, od = 0;
         for (int a = 0; a < 3; a++) {
@@ -91,13 +91,17 @@ static void meet(const rgi_bundle *b, rgi_meeting *m) {
         double h = sqrt(dd * rgi_max(inside, 0));
         double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - r * r;
         double q = od > 0 ? -od - h : -od + h;
-        double root = od > 0 ? q / dd : (q != 0 ? c / q : 0);
-        found[i] = shift[i] + root;
-        right[i] = (inside >= 0) & (found[i] >= b->t_min[i]) & (found[i] <= b->t_max[i]);
+        double far_from_zero = q / dd, near_zero = q != 0 ? c / q : 0;
+        double first = shift[i] + (od > 0 ? far_from_zero : near_zero);
+        double second = shift[i] + (od > 0 ? near_zero : far_from_zero);
+        int first_in = (first >= b->t_min[i]) & (first <= b->t_max[i]);
+        int second_in = (second >= b->t_min[i]) & (second <= b->t_max[i]);
+        m->scaled_t[i] = first_in ? first : second;
+        met[i] = (inside >= 0) & (first_in | second_in);
     }
-    m->right = 0;
-    LANES(i) m->t[i] = found[i] * b->to_world[i] * b->to_world2[i];
-    LANES(i) m->right |= (uint32_t)right[i] << i;
+    m->met = 0;
+    LANES(i) m->t[i] = m->scaled_t[i] * b->to_world[i] * b->to_world2[i];
+    LANES(i) m->met |= (uint32_t)met[i] << i;
 }
 
 /* rgi_beam_init for all lanes of a packet. */

@@ -162,6 +162,7 @@ static bool ask_of_packet(rgi_packet *p, uint32_t ray, uint32_t slot) {
     const rgi_beam_scale scale = {p->shift[ray], p->length[ray]};
     q->done = rgi_query_visit(q, slot);
     if (!q->found) return q->done;
+    p->found |= 1u << ray;
     p->t_hi[ray] = rgi_beam_above(&scale, p->pad[ray], q->walk.t_max);
     p->t_lo[ray] = rgi_beam_below(&scale, p->pad[ray], q->walk.t_max);
     return q->done;
@@ -186,7 +187,7 @@ static uint32_t meet_certain(const group *g, const rgi_packet *p, rgi_meeting *m
         ids[i] = rgi_object_id(object, slot);
     }
     scene->kernels->meet(&g->bundle, m);
-    return p->certain & m->right;
+    return p->certain & m->met;
 }
 
 /* Writes the hits that are certain and the misses of rays that asked nothing. Returns their bits. */
@@ -243,6 +244,8 @@ static uint32_t bundle_through(group *g) {
         for (uint32_t i = 0; i < g->count; i++) packet.ask_all |= g->bundle.mask[i] == 0;
         packet.ask = ask_of_packet;
         packet.context = g;
+        packet.bundle = &g->bundle;
+        packet.found = 0;
         kernels->trace_packet(g->lattice, &packet);
         return finish_packet(g, &packet);
     }
