@@ -17,6 +17,9 @@ float rgi_beam_below(const rgi_beam_scale *scale, float pad, double t) {
 }
 
 static void start(rgi_beam *beam, const rgi_lattice *lattice) {
+    beam->t_after = beam->t_min + 0x1p-17f * fabsf(beam->t_min) + 8 * beam->pad;
+    beam->t_before = beam->t_max - 0x1p-17f * fabsf(beam->t_max) - 8 * beam->pad;
+    beam->hit = false;
     beam->nodes = 0;
     beam->waiting = 0;
     beam->depth = 1;

@@ -54,7 +54,10 @@ typedef struct rgi_beam {
     /** Intersects the object with the ray in double; may lower t_max. Returns true to end. */
     bool (*ask)(struct rgi_beam *beam, uint32_t slot);
     void *query;
-    uint32_t nodes; /* counts nodes and blocks looked into */
+    bool any;                /* any hit will do, and what is certain need not be asked */
+    bool hit;                /* out: it has one that was not asked */
+    float t_after, t_before; /* what is met between these is surely in range */
+    uint32_t nodes;          /* counts nodes and blocks looked into */
     /* the walk */
     uint32_t depth;
     uint32_t waiting; /* bits of the objects of `block` that are to be asked */
@@ -65,7 +68,7 @@ typedef struct rgi_beam {
     float ts[RGI_STACK];
 } rgi_beam;
 
-/** Fills all but ask and query; false if the ray passes all that is stored. */
+/** Fills all but ask, query and any; false if the ray passes all that is stored. */
 bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
                    double t_max);
 
@@ -107,7 +110,7 @@ typedef struct rgi_packet {
     uint32_t negative;
 } rgi_packet;
 
-/** One ray of a packet on its own; ask and query are left. */
+/** One ray of a packet on its own; ask, query and any are left. */
 void rgi_beam_of_packet(rgi_beam *beam, const rgi_packet *packet, uint32_t ray, const rgi_lattice *lattice);
 
 /** A bound from above for a t of the ray, in the frame. */

@@ -397,6 +397,7 @@ rgi_middle rgi_lattice_middle(const rgi_lattice *lattice) {
         m.extent += rgi_max(fabs((double)lattice->lo[a]), fabs((double)lattice->hi[a]));
     }
     m.radius = sqrt(rgi_dot(half, half));
+    m.spacing = (float)(1 / cbrt((double)(lattice->count ? lattice->count : 1)));
     return m;
 }
 

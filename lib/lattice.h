@@ -180,6 +180,7 @@ typedef struct rgi_middle {
     double centre[3]; /* relative to the frame's origin, in world units */
     double radius;    /* in world units */
     double extent;    /* the largest coordinates along the axes, added up, in units of the frame */
+    float spacing;    /* 1 / cube root of the number of objects: how far apart they are, in parts of the whole */
 } rgi_middle;
 
 rgi_middle rgi_lattice_middle(const rgi_lattice *lattice);

@@ -31,6 +31,11 @@ static bool ask(rgi_beam *beam, uint32_t slot) {
     return q->done;
 }
 
+/* Whether not every hit counts: then nothing is certain before it was asked. */
+static bool asks_all(const rgi_call *c) {
+    return c->config.filter || c->config.cull != RG_CULL_NONE || c->scene->masked;
+}
+
 static void visit_unbounded(rgi_query *q, const rgi_lattice *lattice) {
     for (uint32_t i = 0; i < lattice->unbounded_count && !q->done; i++)
         q->done = rgi_query_visit(q, lattice->unbounded[i]);
@@ -41,7 +46,12 @@ static void trace_beams(const rgi_call *c, const rgi_lattice *lattice, rgi_beam 
         c->scene->kernels->trace_one(lattice, &beams[0]);
     else if (count)
         c->scene->kernels->trace_some(lattice, beams, count);
-    for (uint32_t i = 0; i < count; i++) ((rgi_query *)beams[i].query)->walk.cells += beams[i].nodes;
+    for (uint32_t i = 0; i < count; i++) {
+        rgi_query *q = beams[i].query;
+        q->walk.cells += beams[i].nodes;
+        q->found |= beams[i].hit;
+        q->done |= beams[i].hit;
+    }
 }
 
 static void through_lattice(group *g, const rgi_lattice *lattice) {
@@ -55,6 +65,7 @@ static void through_lattice(group *g, const rgi_lattice *lattice) {
         if (q->done || !lattice->root || !rgi_beam_init(beam, lattice, &middle, &q->ray, q->walk.t_max)) continue;
         beam->ask = ask;
         beam->query = q;
+        beam->any = g->call->any && !asks_all(g->call) && q->ray.mask;
         used++;
     }
     trace_beams(g->call, lattice, beams, used);
@@ -240,7 +251,7 @@ static uint32_t bundle_through(group *g) {
     bool counted = c->hits.cells.data || c->hits.tests.data;
     if (!counted && kernels->bound(&packet, g->lattice, &g->middle)) {
         packet.any = c->any;
-        packet.ask_all = c->config.filter || c->config.cull != RG_CULL_NONE || c->scene->masked;
+        packet.ask_all = asks_all(c);
         for (uint32_t i = 0; i < g->count; i++) packet.ask_all |= g->bundle.mask[i] == 0;
         packet.ask = ask_of_packet;
         packet.context = g;
@@ -255,6 +266,7 @@ static uint32_t bundle_through(group *g) {
         uint32_t i = (uint32_t)__builtin_ctz(rays);
         rgi_beam_of_packet(&beams[used], &packet, i, g->lattice);
         beams[used].ask = ask;
+        beams[used].any = c->any && !asks_all(c) && g->bundle.mask[i];
         beams[used++].query = query_of(g, i);
     }
     trace_beams(c, g->lattice, beams, used);
