@@ -1,210 +1,283 @@
 /* SPDX-License-Identifier: MIT */
-#define _POSIX_C_SOURCE 200809L
 #include "scenes.h"
 
+#include "measure.h"
+#include "mesh.h"
+
+#include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
-static const double FILLED = 0.05; /* part of the unit cube's volume, overlaps counted twice */
+static const double FILLED = 0.05; /* part of the volume, overlaps counted twice */
 
-const struct bench_sizes BENCH_SIZES[] = {{"equal", 1, 0}, {"mixed", 1000, 64}, {NULL, 0, 0}};
+enum { CLUSTERS = 64, BIG_ONES = 10, MESH_LEVELS = 4, FORMS = 16 };
 
-double bench_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+const char *const BENCH_SCENES[] = {"uniform", "mixed", "stadium", "boxes", "capsules", "mixture", "meshes", NULL};
 
-void bench_check(rg_result result) {
-    if (result == RG_OK) return;
-    fprintf(stderr, "%s: %s\n", rg_result_name(result), rg_error_message());
-    exit(1);
-}
-
-static void *allocate(size_t count, size_t size) {
-    void *memory = calloc(count, size);
-    if (!memory) {
-        fprintf(stderr, "out of memory\n");
-        exit(1);
-    }
-    return memory;
-}
-
-/* In [0, 1). The generator is splitmix64. */
-static double next_random(uint64_t *state) {
-    uint64_t z = *state += 0x9E3779B97F4A7C15u;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
-/* Evenly on the unit sphere. */
-static void random_direction(uint64_t *state, double direction[3]) {
-    double z = 2 * next_random(state) - 1, angle = 2 * PI * next_random(state);
-    double r = sqrt(1 - z * z);
-    direction[0] = r * cos(angle);
-    direction[1] = r * sin(angle);
-    direction[2] = z;
+static double rounded(double x) {
+    return (double)(float)x;
 }
 
 static double clamp(double x) {
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-/* ------------------------------------------------------------------------------------------------- scenes */
+static double between(uint64_t *random, double lo, double hi) {
+    return lo + (hi - lo) * bench_random(random);
+}
 
-static void place_evenly(struct bench_scene *scene) {
-    for (uint32_t i = 0; i < scene->count; i++) {
-        for (int k = 0; k < 3; k++) scene->positions[i][k] = next_random(&scene->random);
+/* ------------------------------------------------------------------------------------------------- shapes */
+
+static struct bench_shape sphere(void) {
+    return (struct bench_shape){RG_SHAPE_SPHERE, {1, 0, 0}, NULL, 1, 4 * PI / 3};
+}
+
+/* Sides in the ratio of up to 1:4. */
+static struct bench_shape box(uint64_t *random) {
+    struct bench_shape shape = {.kind = RG_SHAPE_BOX};
+    for (int k = 0; k < 3; k++) shape.size[k] = rounded(exp2(between(random, -1, 1)));
+    const double *s = shape.size;
+    shape.reach = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    shape.volume = 8 * s[0] * s[1] * s[2];
+    return shape;
+}
+
+/* Up to three times as long as wide. */
+static struct bench_shape capsule(uint64_t *random) {
+    struct bench_shape shape = {.kind = RG_SHAPE_CAPSULE};
+    shape.size[0] = rounded(between(random, 0.5, 2));
+    shape.size[1] = 1;
+    shape.reach = shape.size[0] + shape.size[1];
+    shape.volume = PI * (2 * shape.size[0] + 4.0 / 3);
+    return shape;
+}
+
+static struct bench_shape mesh(void) {
+    return (struct bench_shape){RG_SHAPE_MESH, {0}, bench_icosphere(MESH_LEVELS), 1, 4 * PI / 3};
+}
+
+/* ----------------------------------------------------------------------------------------------- placing */
+
+static void place_evenly(struct bench_scene *scene, uint32_t first, const double lo[3], const double hi[3]) {
+    for (uint32_t i = first; i < scene->count; i++) {
+        for (int k = 0; k < 3; k++) scene->positions[i][k] = rounded(between(&scene->random, lo[k], hi[k]));
     }
 }
 
 /* Around each centre the distance is even in [0, 0.15), so the density falls with its square. */
-static void place_in_clusters(struct bench_scene *scene, int clusters) {
-    double(*centres)[3] = allocate((size_t)clusters, sizeof *centres);
-    for (int c = 0; c < clusters; c++) {
-        for (int k = 0; k < 3; k++) centres[c][k] = next_random(&scene->random);
+static void place_in_clusters(struct bench_scene *scene) {
+    double centres[CLUSTERS][3];
+    for (int c = 0; c < CLUSTERS; c++) {
+        for (int k = 0; k < 3; k++) centres[c][k] = bench_random(&scene->random);
     }
     for (uint32_t i = 0; i < scene->count; i++) {
-        double direction[3], distance = 0.15 * next_random(&scene->random);
-        const double *centre = centres[(int)(clusters * next_random(&scene->random))];
-        random_direction(&scene->random, direction);
-        for (int k = 0; k < 3; k++) scene->positions[i][k] = clamp(centre[k] + distance * direction[k]);
-    }
-    free(centres);
-}
-
-static void choose_radii(struct bench_scene *scene, double size_range) {
-    double cubes = 0;
-    for (int s = 0; s < BENCH_SHAPES; s++) {
-        scene->radii[s] = pow(size_range, -(double)s / (BENCH_SHAPES - 1));
-        cubes += scene->radii[s] * scene->radii[s] * scene->radii[s] / BENCH_SHAPES;
-    }
-    double largest = cbrt(FILLED * 3 / (4 * PI * cubes * scene->count));
-    for (int s = 0; s < BENCH_SHAPES; s++) {
-        scene->radii[s] *= largest;
-        bench_check(rg_shape_create_sphere(NULL, scene->radii[s], &scene->shapes[s]));
+        double direction[3], distance = 0.15 * bench_random(&scene->random);
+        const double *centre = centres[(int)(CLUSTERS * bench_random(&scene->random))];
+        bench_random_direction(&scene->random, direction);
+        for (int k = 0; k < 3; k++) {
+            scene->positions[i][k] = rounded(clamp(centre[k] + distance * direction[k]));
+        }
     }
 }
 
-void bench_scene_empty(struct bench_scene *scene) {
-    rg_grid_config grid;
-    rg_scene_config config;
-    bench_check(rg_grid_config_default(&grid, sizeof grid));
-    bench_check(rg_scene_config_default(&config, sizeof config));
-    grid.kind = scene->kind;
-    config.grid = &grid;
-    config.workers = 1;
-    bench_check(rg_scene_destroy(&scene->scene));
-    bench_check(rg_scene_create(&config, &scene->scene));
+/* Gives the objects from `first` on one common factor, so that they fill their part of `volume`. */
+static void fill(struct bench_scene *scene, uint32_t first, double volume) {
+    double sum = 0;
+    for (uint32_t i = first; i < scene->count; i++) {
+        sum += bench_shape_of(scene, i)->volume * pow(scene->scales[i], 3);
+    }
+    double factor = cbrt(FILLED * volume / sum);
+    for (uint32_t i = first; i < scene->count; i++) scene->scales[i] = rounded(factor * scene->scales[i]);
 }
 
-struct bench_scene *bench_scene_create(const struct bench_sizes *sizes, rg_grid_kind kind, uint32_t count) {
-    struct bench_scene *scene = allocate(1, sizeof *scene);
-    scene->kind = kind;
+/* A rotation by a random unit quaternion. */
+static void turn(uint64_t *random, float m[9]) {
+    double axis[3], half = PI * bench_random(random);
+    bench_random_direction(random, axis);
+    double w = cos(half), x = sin(half) * axis[0], y = sin(half) * axis[1], z = sin(half) * axis[2];
+    const double rotation[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                                2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                                2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    for (int k = 0; k < 9; k++) m[k] = (float)rotation[k];
+}
+
+/* All but spheres, which no host would turn. */
+static void turn_all(struct bench_scene *scene) {
+    static const float STRAIGHT[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    scene->linears = bench_allocate(scene->count, sizeof *scene->linears);
+    for (uint32_t i = 0; i < scene->count; i++) {
+        if (bench_shape_of(scene, i)->kind == RG_SHAPE_SPHERE) {
+            memcpy(scene->linears[i], STRAIGHT, sizeof STRAIGHT);
+        } else {
+            turn(&scene->random, scene->linears[i]);
+        }
+    }
+}
+
+static void spread_shapes(struct bench_scene *scene) {
+    scene->shape_of = bench_allocate(scene->count, sizeof *scene->shape_of);
+    for (uint32_t i = 0; i < scene->count; i++) {
+        scene->shape_of[i] = (uint8_t)(scene->shape_count * bench_random(&scene->random));
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- scenes */
+
+static const double UNIT_LO[3] = {0, 0, 0}, UNIT_HI[3] = {1, 1, 1};
+
+static void add_shape(struct bench_scene *scene, struct bench_shape shape) {
+    scene->shapes[scene->shape_count++] = shape;
+}
+
+/* Radii 1:1000, evenly on a logarithmic scale. */
+static void make_mixed(struct bench_scene *scene) {
+    add_shape(scene, sphere());
+    place_in_clusters(scene);
+    for (uint32_t i = 0; i < scene->count; i++) scene->scales[i] = pow(1000, -bench_random(&scene->random));
+    fill(scene, 0, 1);
+}
+
+/* The cluster keeps clear of the big spheres, so that rays see it. */
+static bool touches_big_ones(const struct bench_scene *scene, const double lo[3], double side) {
+    for (int i = 0; i < BIG_ONES; i++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) square += pow(scene->positions[i][k] - lo[k] - side / 2, 2);
+        if (sqrt(square) < scene->scales[i] + 2 * side) return true;
+    }
+    return false;
+}
+
+/* Ten spheres that fill their part of the cube, all others in a cube of 1/100 its side. */
+static void make_stadium(struct bench_scene *scene) {
+    const double side = 0.01;
+    uint32_t count = scene->count;
+    add_shape(scene, sphere());
+    scene->count = BIG_ONES;
+    place_evenly(scene, 0, UNIT_LO, UNIT_HI);
+    fill(scene, 0, 1);
+    scene->count = count;
+    do {
+        for (int k = 0; k < 3; k++) {
+            scene->aim_lo[k] = between(&scene->random, 0.3, 0.7);
+            scene->aim_hi[k] = scene->aim_lo[k] + side;
+        }
+    } while (touches_big_ones(scene, scene->aim_lo, side));
+    scene->has_aim = true;
+    place_evenly(scene, BIG_ONES, scene->aim_lo, scene->aim_hi);
+    fill(scene, BIG_ONES, side * side * side);
+}
+
+/* Shapes of the kinds asked for, of like size, evenly spread. */
+static void make_even(struct bench_scene *scene) {
+    bool mixture = strcmp(scene->name, "mixture") == 0;
+    if (strcmp(scene->name, "uniform") == 0) {
+        add_shape(scene, sphere());
+    } else if (strcmp(scene->name, "meshes") == 0) {
+        add_shape(scene, mesh());
+    } else if (mixture) {
+        add_shape(scene, mesh());
+        for (int i = 0; i < 3; i++) add_shape(scene, sphere());
+    }
+    for (int i = 0; mixture && i < 3; i++) add_shape(scene, box(&scene->random));
+    for (int i = 0; mixture && i < 3; i++) add_shape(scene, capsule(&scene->random));
+    while (strcmp(scene->name, "boxes") == 0 && scene->shape_count < FORMS) {
+        add_shape(scene, box(&scene->random));
+    }
+    while (strcmp(scene->name, "capsules") == 0 && scene->shape_count < FORMS) {
+        add_shape(scene, capsule(&scene->random));
+    }
+    if (scene->shape_count > 1) spread_shapes(scene);
+    place_evenly(scene, 0, UNIT_LO, UNIT_HI);
+    fill(scene, 0, 1);
+    if (strcmp(scene->name, "uniform") != 0) turn_all(scene);
+}
+
+void bench_settle(struct bench_scene *scene) {
+    scene->homes = bench_allocate(scene->count, sizeof *scene->homes);
+    memcpy(scene->homes, scene->positions, scene->count * sizeof *scene->homes);
+}
+
+struct bench_scene *bench_scene_create(const char *name, uint32_t count) {
+    struct bench_scene *scene = bench_allocate(1, sizeof *scene);
+    scene->name = name;
     scene->count = count;
     scene->random = count;
-    scene->shape_of = allocate(count, sizeof *scene->shape_of);
-    scene->positions = allocate(count, sizeof *scene->positions);
-    scene->objects = allocate(count, sizeof *scene->objects);
-    scene->order = allocate(count, sizeof *scene->order);
-    choose_radii(scene, sizes->size_range);
-    if (sizes->clusters) {
-        place_in_clusters(scene, sizes->clusters);
+    scene->shapes = bench_allocate(FORMS, sizeof *scene->shapes);
+    scene->positions = bench_allocate(count, sizeof *scene->positions);
+    scene->scales = bench_allocate(count, sizeof *scene->scales);
+    for (uint32_t i = 0; i < count; i++) scene->scales[i] = 1;
+    if (strcmp(name, "mixed") == 0) {
+        make_mixed(scene);
+    } else if (strcmp(name, "stadium") == 0) {
+        make_stadium(scene);
     } else {
-        place_evenly(scene);
+        make_even(scene);
     }
-    for (uint32_t i = 0; i < count; i++) {
-        scene->shape_of[i] = (uint8_t)(BENCH_SHAPES * next_random(&scene->random));
-        scene->order[i] = i;
-    }
-    bench_scene_empty(scene);
+    bench_settle(scene);
     return scene;
 }
 
 void bench_scene_destroy(struct bench_scene *scene) {
-    bench_check(rg_scene_destroy(&scene->scene));
-    for (int s = 0; s < BENCH_SHAPES; s++) rg_shape_release(&scene->shapes[s]);
+    if (!scene) return;
+    for (int s = 0; s < scene->shape_count; s++) bench_mesh_destroy(scene->shapes[s].mesh);
+    free(scene->shapes);
     free(scene->shape_of);
     free(scene->positions);
-    free(scene->objects);
-    free(scene->order);
+    free(scene->homes);
+    free(scene->scales);
+    free(scene->linears);
     free(scene);
-}
-
-rg_shape *bench_shape(const struct bench_scene *scene, uint32_t which) {
-    return scene->shapes[scene->shape_of[which]];
 }
 
 rg_pose bench_pose(const struct bench_scene *scene, uint32_t which) {
     const double *p = scene->positions[which];
-    return rg_pose_at(p[0], p[1], p[2]);
+    rg_pose pose = rg_pose_at(p[0], p[1], p[2]);
+    if (scene->linears) memcpy(pose.linear, scene->linears[which], sizeof pose.linear);
+    pose.scale = scene->scales[which];
+    return pose;
 }
 
-void bench_step(struct bench_scene *scene, uint32_t which, double step) {
-    double direction[3], length = step * scene->radii[scene->shape_of[which]];
-    random_direction(&scene->random, direction);
-    for (int k = 0; k < 3; k++) scene->positions[which][k] += length * direction[k];
+bool bench_all_spheres(const struct bench_scene *scene) {
+    for (int s = 0; s < scene->shape_count; s++) {
+        if (scene->shapes[s].kind != RG_SHAPE_SPHERE) return false;
+    }
+    return true;
 }
 
-void bench_shuffle(struct bench_scene *scene) {
-    for (uint32_t i = scene->count - 1; i > 0; i--) {
-        uint32_t j = (uint32_t)((i + 1) * next_random(&scene->random));
-        uint32_t other = scene->order[j];
-        scene->order[j] = scene->order[i];
-        scene->order[i] = other;
+static void step_along(const struct bench_scene *scene, uint32_t which, double length, const double direction[3],
+                       double position[3]) {
+    for (int k = 0; k < 3; k++) position[k] = rounded(scene->positions[which][k] + length * direction[k]);
+}
+
+void bench_step(struct bench_scene *scene, uint32_t which, double step, double position[3]) {
+    double direction[3];
+    bench_random_direction(&scene->random, direction);
+    step_along(scene, which, step * bench_reach(scene, which), direction, position);
+}
+
+void bench_step_near_home(struct bench_scene *scene, uint32_t which, double step, double position[3]) {
+    double home[3], square = 0, radius = bench_reach(scene, which);
+    for (int k = 0; k < 3; k++) {
+        home[k] = scene->homes[which][k] - scene->positions[which][k];
+        square += home[k] * home[k];
+    }
+    if (square <= 4 * radius * radius) {
+        bench_step(scene, which, step, position);
+    } else {
+        step_along(scene, which, step * radius / sqrt(square), home, position);
     }
 }
 
-reference_scene *bench_reference(const struct bench_scene *scene) {
-    reference_scene *reference = reference_create();
-    const reference_shape *shapes[BENCH_SHAPES];
-    for (int s = 0; s < BENCH_SHAPES; s++) shapes[s] = reference_sphere(reference, scene->radii[s]);
-    for (uint32_t i = 0; i < scene->count; i++) {
-        rg_pose pose = bench_pose(scene, i);
-        reference_insert(reference, scene->objects[i], shapes[scene->shape_of[i]], &pose, UINT32_MAX);
+uint32_t *bench_choose(struct bench_scene *scene, uint32_t count) {
+    uint32_t *all = bench_allocate(scene->count, sizeof *all);
+    for (uint32_t i = 0; i < scene->count; i++) all[i] = i;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t j = i + (uint32_t)((scene->count - i) * bench_random(&scene->random));
+        uint32_t other = all[j];
+        all[j] = all[i];
+        all[i] = other;
     }
-    return reference;
-}
-
-/* --------------------------------------------------------------------------------------------------- rays */
-
-/* The camera stands before the middle of the cube's face z = 0, which just fills the picture. */
-static rg_ray camera_ray(int x, int y, int side) {
-    const double origin[3] = {0.5, 0.5, -1.2};
-    double direction[3] = {(x + 0.5) / side - 0.5, (y + 0.5) / side - 0.5, 1.2};
-    return rg_ray_from(origin, direction);
-}
-
-rg_ray *bench_primary_rays(int side, int tile) {
-    rg_ray *rays = allocate((size_t)side * (size_t)side, sizeof *rays);
-    uint64_t random = 1;
-    int across = side / tile, tiles = across * across, done = 0;
-    int *order = allocate((size_t)tiles, sizeof *order);
-    for (int i = 0; i < tiles; i++) {
-        int j = (int)((i + 1) * next_random(&random));
-        order[i] = order[j];
-        order[j] = i;
-    }
-    for (int i = 0; i < tiles; i++) {
-        int x = order[i] % across * tile, y = order[i] / across * tile;
-        for (int p = 0; p < tile * tile; p++) rays[done++] = camera_ray(x + p % tile, y + p / tile, side);
-    }
-    free(order);
-    return rays;
-}
-
-rg_ray *bench_random_rays(int count) {
-    rg_ray *rays = allocate((size_t)count, sizeof *rays);
-    uint64_t random = 2;
-    for (int i = 0; i < count; i++) {
-        double origin[3], direction[3];
-        for (int k = 0; k < 3; k++) origin[k] = next_random(&random);
-        random_direction(&random, direction);
-        rays[i] = rg_ray_from(origin, direction);
-    }
-    return rays;
+    return all;
 }

@@ -1,64 +1,82 @@
 /* SPDX-License-Identifier: MIT */
-/* scenes.h: the scenes, rays and clock that the benchmarks share. Failures of the library end the benchmark. */
+/*
+ * scenes.h: what is measured: objects in the unit cube, 5 % of it filled (overlaps counted twice).
+ *
+ * All numbers are floats, kept as double: raygrid and a peer that knows no double then have the same scene to the
+ * last bit, and both can be held against the same exact answers.
+ */
 #ifndef RAYGRID_BENCH_SCENES_H
 #define RAYGRID_BENCH_SCENES_H
 
 #include <raygrid/raygrid.h>
-#include <reference.h>
 #include <stdbool.h>
 
-/** How large spheres are and where they lie; all in the unit cube, 5 % of its volume filled. */
-struct bench_sizes {
-    const char *name;  /* NULL ends the list */
-    double size_range; /* largest radius / smallest, spread evenly on a logarithmic scale */
-    int clusters;      /* 0: centres spread evenly over the cube */
+/** The triangles of a mesh, indexed. */
+struct bench_mesh {
+    float *vertices; /* x, y, z */
+    uint32_t vertex_count;
+    uint32_t *corners; /* three a triangle */
+    uint32_t triangle_count;
 };
 
-extern const struct bench_sizes BENCH_SIZES[];
+/** A shape around its local origin. */
+struct bench_shape {
+    rg_shape_kind kind;
+    double size[3]; /* sphere: radius; box: half its sides; capsule: half its segment, along x, and its radius */
+    struct bench_mesh *mesh;
+    double reach; /* the farthest point from the origin */
+    double volume;
+};
 
-enum { BENCH_SHAPES = 64 };
+enum { BENCH_SHAPES = 256 }; /* of a scene, at most */
 
-/** Spheres in a scene with one grid of one kind, and what the host knows of them. */
 struct bench_scene {
-    rg_scene *scene;
-    rg_grid_kind kind;
+    const char *name;
     uint32_t count;
-    rg_shape *shapes[BENCH_SHAPES]; /* of falling radius */
-    double radii[BENCH_SHAPES];
-    uint8_t *shape_of;      /* of each object: index into shapes */
-    double (*positions)[3]; /* of each object */
-    rg_object *objects;
-    uint32_t *order; /* the numbers 0 to count - 1, in any order */
+    struct bench_shape *shapes;
+    int shape_count;
+    uint8_t *shape_of;           /* of each object; NULL: all have the first */
+    double (*positions)[3];      /* of each object */
+    double (*homes)[3];          /* where it was at first */
+    double *scales;              /* of each object */
+    float (*linears)[9];         /* of each object; NULL: none is turned */
+    double aim_lo[3], aim_hi[3]; /* of its cluster, where it has one that rays are aimed at */
+    bool has_aim;
     uint64_t random;
 };
 
-/** Chooses the spheres; the scene stays empty. */
-struct bench_scene *bench_scene_create(const struct bench_sizes *sizes, rg_grid_kind kind, uint32_t count);
+/** The names of the scenes that come in any size, NULL at the end. */
+extern const char *const BENCH_SCENES[];
+
+/** One of BENCH_SCENES. */
+struct bench_scene *bench_scene_create(const char *name, uint32_t count);
+
+/** Makes the present positions the homes; for those who make a scene. */
+void bench_settle(struct bench_scene *scene);
+
 void bench_scene_destroy(struct bench_scene *scene);
 
-/** Puts a new, empty scene in the place of the present one. */
-void bench_scene_empty(struct bench_scene *scene);
+static inline const struct bench_shape *bench_shape_of(const struct bench_scene *scene, uint32_t which) {
+    return &scene->shapes[scene->shape_of ? scene->shape_of[which] : 0];
+}
 
-rg_shape *bench_shape(const struct bench_scene *scene, uint32_t which);
+/** The radius of an object around its position. */
+static inline double bench_reach(const struct bench_scene *scene, uint32_t which) {
+    return bench_shape_of(scene, which)->reach * scene->scales[which];
+}
+
 rg_pose bench_pose(const struct bench_scene *scene, uint32_t which);
 
-/** Moves the position of a sphere, not yet the object, by `step` of its radius in a random direction. */
-void bench_step(struct bench_scene *scene, uint32_t which, double step);
-void bench_shuffle(struct bench_scene *scene);
+/** Whether every object is a sphere. */
+bool bench_all_spheres(const struct bench_scene *scene);
 
-/** The same objects for brute force. */
-reference_scene *bench_reference(const struct bench_scene *scene);
+/** The point `step` of the object's radius away from its position in a random direction, in floats. */
+void bench_step(struct bench_scene *scene, uint32_t which, double step, double position[3]);
 
-/** side * side rays from a camera that sees the whole cube, in square tiles, the tiles in random order. */
-rg_ray *bench_primary_rays(int side, int tile);
+/** The same, but back towards its home if it is more than two radii from there: the scene stays what it is. */
+void bench_step_near_home(struct bench_scene *scene, uint32_t which, double step, double position[3]);
 
-/** Rays from anywhere in the cube in any direction. */
-rg_ray *bench_random_rays(int count);
-
-/** Seconds since some time in the past. */
-double bench_seconds(void);
-
-/** Prints what was wrong and ends the benchmark, unless the result is RG_OK. */
-void bench_check(rg_result result);
+/** `count` different objects in random order; free() the result. */
+uint32_t *bench_choose(struct bench_scene *scene, uint32_t count);
 
 #endif

@@ -1,263 +1,289 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * updates.c: what it costs to insert, move and remove single objects, and to trace single rays, by grid kind, number
- * of objects and distribution of sizes. Beside each speed stands its error against brute force.
- *
- *     updates [--quick] [--json FILE]
- *
- * All times are wall-clock of one thread, the scene having one worker; each is the median of several repeats after
- * one that is thrown away. Objects are touched in random order, as a game does it, so memory is met as cold as there.
- * Ends with 1 if any hit was wrong.
+ * updates.c: what changes cost until the next ray sees them: for raygrid the call, for the peer the commit that makes
+ * them seen. After each measurement both are held against brute force over the bodies as they then are.
  */
-#include "scenes.h"
+#include "bench.h"
 
-#include <jansson.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_REPEATS = 9, MAX_TOUCHED = 100000, IMAGE_SIDE = 512, TILE_SIDE = 8 };
-
-struct effort {
-    int repeats;
-    uint32_t largest;     /* objects */
-    double ray_seconds;   /* at most, for each measured kind of rays */
-    double checked_tests; /* about so many brute-force sphere tests for each configuration */
+enum {
+    LEAST_CHANGES = 4096, /* in a turn: fewer take no longer than reading the clock */
+    PROBES = 4096         /* rays that look at what has changed */
 };
 
-static const struct effort FULL = {7, 1000000, 2, 4e7};
-static const struct effort QUICK = {3, 10000, 0.1, 2e6};
-
-/* One line of the table. Times in nanoseconds a call. */
-struct row {
-    const char *sizes, *grid;
-    uint32_t objects;
-    double fill;   /* insert, from the empty scene up, rebuilds included */
-    double insert; /* into the full scene */
-    double remove;
-    double move_tenth, move_one; /* rg_scene_move by 0.1 and by 1 radius */
-    double move_to;              /* rg_scene_move_to by 1 radius */
-    double move_many;            /* rg_scene_move_many of all by 1 radius, an object */
-    double bytes;                /* an object */
-    double primary, random;      /* million rays a second, one ray a call */
-    int checked, wrong;
-    double worst_t; /* |t - exact t| in world length; the scene has side 1 */
+/* A scene whose bodies change, on both sides. */
+struct changes {
+    struct bench_run *run;
+    struct bench_scene *bodies;
+    struct own *own;
+    struct peer *peer; /* NULL: there is none, or it takes no part in what is measured */
+    struct bench_rays *probe;
+    struct bench_answers answers;
+    uint32_t *order; /* all bodies in random order */
+    /* What a turn does: `passes` times `count` bodies, one list after the other. */
+    uint32_t count, passes;
+    uint32_t *which;
+    rg_object *objects;
+    double (*targets)[3];
+    double step; /* radii */
+    bool one_by_one, in_order;
+    double inserting; /* seconds of a body, beside the removing that the turn returns */
 };
 
-static int by_value(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+static uint32_t room_for(uint32_t bodies) {
+    return bodies > 2 * LEAST_CHANGES ? bodies : 2 * LEAST_CHANGES;
 }
 
-static double median(double *values, int count) {
-    qsort(values, (size_t)count, sizeof *values, by_value);
-    return values[count / 2];
+static struct changes *changes_create(struct bench_run *run, struct bench_scene *bodies) {
+    struct changes *changes = bench_allocate(1, sizeof *changes);
+    uint32_t count = bodies->count, room = room_for(count);
+    changes->run = run;
+    changes->bodies = bodies;
+    changes->own = own_create(changes->bodies, 1);
+    changes->probe = bench_random_rays(changes->bodies, PROBES, changes->bodies->has_aim, false);
+    changes->answers = bench_answers_create(changes->probe->count);
+    changes->order = bench_choose(changes->bodies, count);
+    changes->which = bench_allocate(room, sizeof *changes->which);
+    changes->objects = bench_allocate(room, sizeof *changes->objects);
+    changes->targets = bench_allocate(room, sizeof *changes->targets);
+    return changes;
 }
 
-/* ------------------------------------------------------------------------------------------------ updates */
+static void changes_destroy(struct changes *changes) {
+    own_destroy(changes->own);
+    bench_rays_destroy(changes->probe);
+    bench_answers_destroy(&changes->answers);
+    free(changes->order);
+    free(changes->which);
+    free(changes->objects);
+    free(changes->targets);
+    bench_scene_destroy(changes->bodies);
+    free(changes);
+}
 
-static double time_fill(struct bench_scene *scene) {
-    double start = bench_seconds();
-    for (uint32_t i = 0; i < scene->count; i++) {
-        rg_pose pose = bench_pose(scene, i);
-        bench_check(rg_scene_insert(scene->scene, bench_shape(scene, i), &pose, &scene->objects[i]));
+/* ------------------------------------------------------------------------------------------------- turns */
+
+/* Chooses bodies, in random order or neighbours by number, and where they go, one pass after the other. */
+static void choose(struct changes *changes) {
+    struct bench_scene *bodies = changes->bodies;
+    for (uint32_t pass = 0; pass < changes->passes; pass++) {
+        uint32_t first = (uint32_t)((bodies->count - changes->count + 1) * bench_random(&bodies->random));
+        for (uint32_t i = 0; i < changes->count; i++) {
+            uint32_t at = pass * changes->count + i;
+            uint32_t body = changes->in_order ? first + i : changes->order[first + i];
+            changes->which[at] = body;
+            changes->objects[at] = changes->own->objects[body];
+            bench_step_near_home(bodies, body, changes->step, changes->targets[at]);
+            memcpy(bodies->positions[body], changes->targets[at], sizeof *bodies->positions);
+        }
     }
-    return (bench_seconds() - start) / scene->count;
 }
 
-/* Removes a random part of the objects and inserts them again, each timed. The ids change. */
-static void time_churn(struct bench_scene *scene, double *removing, double *inserting) {
-    uint32_t touched = scene->count / 2 < MAX_TOUCHED ? scene->count / 2 : MAX_TOUCHED;
-    bench_shuffle(scene);
-    double start = bench_seconds();
-    for (uint32_t i = 0; i < touched; i++) {
-        bench_check(rg_scene_remove(scene->scene, scene->objects[scene->order[i]]));
-    }
-    double removed = bench_seconds();
-    for (uint32_t i = 0; i < touched; i++) {
-        uint32_t which = scene->order[i];
-        rg_pose pose = bench_pose(scene, which);
-        bench_check(rg_scene_insert(scene->scene, bench_shape(scene, which), &pose, &scene->objects[which]));
-    }
-    *removing = (removed - start) / touched;
-    *inserting = (bench_seconds() - removed) / touched;
-}
-
-/* Moves a random part of the objects by `step` of their radius each. */
-static double time_moves(struct bench_scene *scene, double step, bool whole_pose) {
-    uint32_t touched = scene->count < MAX_TOUCHED ? scene->count : MAX_TOUCHED;
-    bench_shuffle(scene);
-    for (uint32_t i = 0; i < touched; i++) bench_step(scene, scene->order[i], step);
-    double start = bench_seconds();
-    if (whole_pose) {
-        for (uint32_t i = 0; i < touched; i++) {
-            rg_pose pose = bench_pose(scene, scene->order[i]);
-            bench_check(rg_scene_move(scene->scene, scene->objects[scene->order[i]], &pose));
+static double turn_of_moves(void *context) {
+    struct changes *changes = context;
+    uint32_t total = changes->passes * changes->count;
+    choose(changes);
+    double before = bench_thread_seconds();
+    if (changes->one_by_one) {
+        for (uint32_t i = 0; i < total; i++) {
+            own_check(rg_scene_move_to(changes->own->scene, changes->objects[i], changes->targets[i]));
         }
     } else {
-        for (uint32_t i = 0; i < touched; i++) {
-            uint32_t which = scene->order[i];
-            bench_check(rg_scene_move_to(scene->scene, scene->objects[which], scene->positions[which]));
+        for (uint32_t i = 0; i < total; i += changes->count) {
+            own_move_many(changes->own, changes->objects + i, changes->targets + i, changes->count);
         }
     }
-    return (bench_seconds() - start) / touched;
+    return (bench_thread_seconds() - before) / total;
 }
 
-static double time_move_many(struct bench_scene *scene) {
-    for (uint32_t i = 0; i < scene->count; i++) bench_step(scene, i, 1);
-    rg_input objects = {scene->objects, sizeof *scene->objects, RG_U64};
-    rg_pose_views poses = {.size = sizeof poses};
-    poses.position = rg_input3_packed(scene->positions, sizeof *scene->positions, RG_F64);
-    double start = bench_seconds();
-    bench_check(rg_scene_move_many(scene->scene, &objects, &poses, scene->count));
-    return (bench_seconds() - start) / scene->count;
+/* The peer is given what raygrid was given just before; the last pass is counted, which is one commit. */
+static double turn_of_peer_moves(void *context) {
+    struct changes *changes = context;
+    uint32_t total = changes->passes * changes->count;
+    return peer_move(changes->peer, changes->which, changes->targets, total, total - changes->count) / changes->count;
 }
 
-static void measure_updates(struct bench_scene *scene, const struct effort *effort, struct row *row) {
-    double fill[MAX_REPEATS], remove[MAX_REPEATS], insert[MAX_REPEATS], tenth[MAX_REPEATS], one[MAX_REPEATS];
-    double to[MAX_REPEATS], many[MAX_REPEATS];
-    /* Repeat -1 warms up; the next overwrites what it measured. */
-    for (int r = -1; r < effort->repeats; r++) {
-        int at = r < 0 ? 0 : r;
-        bench_scene_empty(scene);
-        fill[at] = time_fill(scene);
+/* The same with one body moved since the commit before. */
+static double turn_of_one_peer_move(void *context) {
+    struct changes *changes = context;
+    uint32_t total = changes->passes * changes->count;
+    peer_move(changes->peer, changes->which, changes->targets, total - 1, total - 1);
+    return peer_move(changes->peer, changes->which + total - 1, changes->targets + total - 1, 1, 0);
+}
+
+static double turn_of_exchange(void *context) {
+    struct changes *changes = context;
+    uint32_t total = changes->passes * changes->count;
+    double removing = 0, inserting = 0;
+    for (uint32_t done = 0; done < total; done += changes->count) {
+        uint32_t first =
+            (uint32_t)((changes->bodies->count - changes->count + 1) * bench_random(&changes->bodies->random));
+        double start = bench_thread_seconds();
+        for (uint32_t i = 0; i < changes->count; i++) own_remove(changes->own, changes->order[first + i]);
+        double removed = bench_thread_seconds();
+        for (uint32_t i = 0; i < changes->count; i++) own_insert(changes->own, changes->order[first + i]);
+        inserting += bench_thread_seconds() - removed;
+        removing += removed - start;
     }
-    for (int r = -1; r < effort->repeats; r++) {
-        int at = r < 0 ? 0 : r;
-        time_churn(scene, &remove[at], &insert[at]);
-        tenth[at] = time_moves(scene, 0.1, true);
-        one[at] = time_moves(scene, 1, true);
-        to[at] = time_moves(scene, 1, false);
-        many[at] = time_move_many(scene);
+    changes->inserting = inserting / total;
+    return removing / total;
+}
+
+static double turn_of_peer_removal(void *context) {
+    struct changes *changes = context;
+    peer_keep(changes->peer, changes->bodies->count);
+    return peer_keep(changes->peer, changes->bodies->count - 1);
+}
+
+static double turn_of_peer_insertion(void *context) {
+    struct changes *changes = context;
+    peer_keep(changes->peer, changes->bodies->count - 1);
+    return peer_keep(changes->peer, changes->bodies->count);
+}
+
+static double turn_of_insertion(void *context) {
+    struct changes *changes = context;
+    turn_of_exchange(changes);
+    return changes->inserting;
+}
+
+/* ------------------------------------------------------------------------------------------------ lines */
+
+static struct bench_duel fight(struct changes *changes, bench_turn *own, bench_turn *peer) {
+    return bench_duel((struct bench_side){own, changes}, (struct bench_side){changes->peer ? peer : NULL, changes},
+                      changes->run->options.effort.turns);
+}
+
+/* What rays see after the changes, against where the bodies now are. */
+static void report(struct changes *changes, const char *what, const struct bench_duel *duel, struct bench_goal goal) {
+    struct bench_run *run = changes->run;
+    struct bench_line line = bench_line("updates", changes->bodies->name, changes->bodies->count, what);
+    struct exact *exact = exact_create(changes->bodies, NULL);
+    struct exact_sample *sample = exact_sample_create(exact, changes->probe, run->options.effort.checks / 20);
+    own_trace(changes->own, changes->probe, UINT32_MAX, &changes->answers);
+    struct exact_error error = bench_judge_own(run, sample, changes->own, &changes->answers);
+    struct exact_error peer_error = {0};
+    if (changes->peer) {
+        peer_trace(changes->peer, changes->probe, (struct peer_way){0, false}, &changes->answers);
+        peer_error = bench_judge_peer(sample, changes->peer, &changes->answers);
+        line.peer_error = &peer_error;
+        line.peer_way = PEER_BUILD_NAMES[peer_build_of(changes->peer)];
+        line.peer_bytes = peer_bytes_per_object(changes->peer);
     }
-    row->fill = 1e9 * median(fill, effort->repeats);
-    row->remove = 1e9 * median(remove, effort->repeats);
-    row->insert = 1e9 * median(insert, effort->repeats);
-    row->move_tenth = 1e9 * median(tenth, effort->repeats);
-    row->move_one = 1e9 * median(one, effort->repeats);
-    row->move_to = 1e9 * median(to, effort->repeats);
-    row->move_many = 1e9 * median(many, effort->repeats);
-    rg_scene_report report = {.size = sizeof report};
-    bench_check(rg_scene_stats(scene->scene, &report));
-    row->bytes = (double)report.bytes / scene->count;
+    line.unit = "ns";
+    line.figure = 1e9 * duel->own;
+    line.peer_figure = 1e9 * duel->peer;
+    line.ratio = duel->ratio;
+    line.goal = goal;
+    line.error = &error;
+    line.bytes = own_bytes_per_object(changes->own);
+    bench_report_line(&run->report, &line);
+    exact_sample_destroy(sample);
+    exact_destroy(exact);
 }
 
-/* --------------------------------------------------------------------------------------------------- rays */
-
-/* Traces the rays one a call, from the first on, as many as the time allows; million rays a second. */
-static double time_rays(struct bench_scene *scene, const rg_ray *rays, double seconds) {
-    enum { BETWEEN_LOOKS = 256 };
-    uint32_t done = 0, count = IMAGE_SIDE * IMAGE_SIDE;
-    double start = bench_seconds(), now = start;
-    while (done < count && now - start < seconds) {
-        for (int i = 0; i < BETWEEN_LOOKS; i++) {
-            rg_hit hit;
-            bench_check(rg_scene_trace(scene->scene, &rays[done++], &hit, 1));
-        }
-        now = bench_seconds();
-    }
-    return 1e-6 * done / (now - start);
+/* How many bodies a turn changes, and how often, so that it takes long enough to be measured. */
+static void set_count(struct changes *changes, uint32_t count) {
+    changes->count = count > 0 ? count : 1;
+    changes->passes = 1 + (LEAST_CHANGES - 1) / changes->count;
 }
 
-static double measure_rays(struct bench_scene *scene, const struct effort *effort, const rg_ray *rays) {
-    double rate[MAX_REPEATS];
-    for (int r = -1; r < effort->repeats; r++) {
-        rate[r < 0 ? 0 : r] = time_rays(scene, rays, effort->ray_seconds / (effort->repeats + 1));
-    }
-    return median(rate, effort->repeats);
+static uint32_t touched(const struct changes *changes, uint32_t bodies) {
+    uint32_t most = changes->run->options.effort.touched;
+    return bodies < most ? bodies : most;
 }
 
-static void check_rays(struct bench_scene *scene, const struct effort *effort, const rg_ray *rays, struct row *row) {
-    int samples = (int)fmin(fmax(effort->checked_tests / 2 / scene->count, 16), 2000);
-    reference_scene *reference = bench_reference(scene);
-    for (int i = 0; i < samples; i++) {
-        const rg_ray *ray = &rays[(uint64_t)i * IMAGE_SIDE * IMAGE_SIDE / (uint64_t)samples];
-        rg_hit hit;
-        bench_check(rg_scene_trace(scene->scene, ray, &hit, 1));
-        reference_error error;
-        if (reference_compare(reference, ray, RG_CULL_NONE, &hit, &error) == REFERENCE_WRONG) {
-            fprintf(stderr, "wrong: %s\n", error.what);
-            row->wrong++;
-        }
-        row->worst_t = fmax(row->worst_t, (double)error.t);
-        row->checked++;
-    }
-    reference_destroy(reference);
-}
-
-/* ------------------------------------------------------------------------------------------------- output */
-
-static void print_head(void) {
-    printf("ns a call; Mrays/s one ray a call; t error in sides of the scene\n");
-    printf("%-8s %-12s %8s %7s %7s %7s %7s %7s %7s %7s %7s %8s %8s %8s %6s %9s\n", "sizes", "grid", "objects", "fill",
-           "insert", "remove", "mv 0.1r", "mv 1r", "to 1r", "many 1r", "bytes", "primary", "random", "checked",
-           "wrong", "t error");
-}
-
-static void print_row(const struct row *row) {
-    printf("%-8s %-12s %8u %7.0f %7.0f %7.0f %7.0f %7.0f %7.0f %7.0f %7.0f %8.3f %8.3f %8d %6d %9.1e\n", row->sizes,
-           row->grid, row->objects, row->fill, row->insert, row->remove, row->move_tenth, row->move_one, row->move_to,
-           row->move_many, row->bytes, row->primary, row->random, row->checked, row->wrong, row->worst_t);
-    fflush(stdout);
-}
-
-static json_t *row_as_json(const struct row *row) {
-    return json_pack("{s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i, s:f}", "sizes",
-                     row->sizes, "grid", row->grid, "objects", (int)row->objects, "fill_ns", row->fill, "insert_ns",
-                     row->insert, "remove_ns", row->remove, "move_tenth_radius_ns", row->move_tenth,
-                     "move_one_radius_ns", row->move_one, "move_to_one_radius_ns", row->move_to, "move_many_ns",
-                     row->move_many, "bytes_per_object", row->bytes, "primary_mrays_per_second", row->primary,
-                     "random_mrays_per_second", row->random, "rays_checked", row->checked, "rays_wrong", row->wrong,
-                     "worst_t_error", row->worst_t);
-}
-
-static struct row measure(const struct bench_sizes *sizes, rg_grid_kind kind, uint32_t count,
-                          const struct effort *effort, const rg_ray *primary, const rg_ray *random) {
-    struct row row = {.sizes = sizes->name, .objects = count};
-    row.grid = kind == RG_GRID_UNIFORM ? "uniform" : "hierarchical";
-    struct bench_scene *scene = bench_scene_create(sizes, kind, count);
-    measure_updates(scene, effort, &row);
-    row.primary = measure_rays(scene, effort, primary);
-    row.random = measure_rays(scene, effort, random);
-    check_rays(scene, effort, primary, &row);
-    check_rays(scene, effort, random, &row);
-    bench_scene_destroy(scene);
-    return row;
-}
-
-int main(int argc, char **argv) {
-    const struct effort *effort = &FULL;
-    const char *json_file = NULL;
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--quick") == 0) {
-            effort = &QUICK;
-        } else if (strcmp(argv[i], "--json") == 0 && i + 1 < argc) {
-            json_file = argv[++i];
-        } else {
-            fprintf(stderr, "usage: updates [--quick] [--json FILE]\n");
-            return 2;
+static void measure_single_moves(struct changes *changes) {
+    static const double STEPS[] = {0.1, 1};
+    uint32_t bodies = changes->bodies->count;
+    changes->one_by_one = true;
+    set_count(changes, touched(changes, bodies));
+    for (int s = 0; s < 2; s++) {
+        for (int random = 0; random < 2; random++) {
+            char what[64];
+            snprintf(what, sizeof what, "move one by %g r%s", STEPS[s], random ? ", random order" : "");
+            changes->step = STEPS[s];
+            changes->in_order = !random;
+            struct bench_duel duel = fight(changes, turn_of_moves, turn_of_one_peer_move);
+            bool counts = !random && bench_all_spheres(changes->bodies);
+            report(changes, what, &duel,
+                   counts ? bench_goal(s ? GOAL_MOVE_RADIUS : GOAL_MOVE_SMALL, bodies) : bench_no_goal());
         }
     }
-    rg_ray *primary = bench_primary_rays(IMAGE_SIDE, TILE_SIDE);
-    rg_ray *random = bench_random_rays(IMAGE_SIDE * IMAGE_SIDE);
-    json_t *rows = json_array();
-    int wrong = 0;
-    print_head();
-    for (const struct bench_sizes *sizes = BENCH_SIZES; sizes->name; sizes++) {
-        for (rg_grid_kind kind = RG_GRID_UNIFORM; kind <= RG_GRID_HIERARCHICAL; kind++) {
-            for (uint32_t count = 1000; count <= effort->largest; count *= 10) {
-                struct row row = measure(sizes, kind, count, effort, primary, random);
-                print_row(&row);
-                json_array_append_new(rows, row_as_json(&row));
-                wrong += row.wrong;
+}
+
+static void measure_many_moves(struct changes *changes) {
+    static const double STEPS[] = {0.1, 1}, SHARES[] = {0.001, 0.01, 0.1, 1};
+    changes->one_by_one = false;
+    changes->in_order = true;
+    for (int s = 0; s < 2; s++) {
+        for (int share = 0; share < 4; share++) {
+            char what[64];
+            snprintf(what, sizeof what, "move %g %% by %g r", 100 * SHARES[share], STEPS[s]);
+            changes->step = STEPS[s];
+            set_count(changes, (uint32_t)(SHARES[share] * changes->bodies->count));
+            struct bench_duel duel = fight(changes, turn_of_moves, turn_of_peer_moves);
+            report(changes, what, &duel, bench_no_goal());
+        }
+    }
+}
+
+static void measure_exchange(struct changes *changes) {
+    uint32_t bodies = changes->bodies->count;
+    bool spheres = bench_all_spheres(changes->bodies);
+    set_count(changes, touched(changes, bodies / 10));
+    struct bench_duel duel = fight(changes, turn_of_insertion, turn_of_peer_insertion);
+    report(changes, "insert one", &duel, spheres ? bench_goal(GOAL_INSERT, bodies) : bench_no_goal());
+    duel = fight(changes, turn_of_exchange, turn_of_peer_removal);
+    if (changes->peer) peer_keep(changes->peer, bodies);
+    report(changes, "remove one", &duel, spheres ? bench_goal(GOAL_REMOVE, bodies) : bench_no_goal());
+}
+
+/* The way to move that costs the peer least. What its rays then cost is for frames.c to say. */
+static enum peer_build quickest_build(struct changes *changes) {
+    static const enum peer_build BUILDS[] = {PEER_LOW, PEER_ARRAY, PEER_REFIT, PEER_USER_LOW, PEER_USER_REFIT};
+    const struct peer_choice *choice = &changes->run->options.peer;
+    enum peer_build best = PEER_LOW;
+    double least = INFINITY;
+    changes->step = 1;
+    set_count(changes, changes->bodies->count / 100);
+    for (size_t b = 0; b < sizeof BUILDS / sizeof *BUILDS; b++) {
+        if (!peer_can(choice, changes->bodies, BUILDS[b])) continue;
+        changes->peer = peer_create(choice, changes->bodies, BUILDS[b]);
+        for (int i = 0; i < 3; i++) {
+            turn_of_moves(changes);
+            double seconds = turn_of_peer_moves(changes);
+            if (seconds < least) {
+                least = seconds;
+                best = BUILDS[b];
             }
         }
+        peer_destroy(changes->peer);
+        changes->peer = NULL;
     }
-    int failed = json_file ? json_dump_file(rows, json_file, JSON_INDENT(2)) : 0;
-    if (failed) fprintf(stderr, "could not write %s\n", json_file);
-    json_decref(rows);
-    free(primary);
-    free(random);
-    return failed || wrong ? 1 : 0;
+    return best;
+}
+
+void bench_updates(struct bench_run *run, const char *scene, uint32_t count) {
+    struct bench_scene *bodies = bench_scene_of(run, scene, count);
+    if (!bodies) return;
+    struct changes *changes = changes_create(run, bodies);
+    const struct peer_choice *choice = &run->options.peer;
+    if (choice->api) {
+        enum peer_build build = quickest_build(changes);
+        changes->peer = peer_create(choice, changes->bodies, build);
+    }
+    measure_single_moves(changes);
+    measure_many_moves(changes);
+    peer_destroy(changes->peer);
+    changes->peer = NULL;
+    if (choice->api && bench_all_spheres(changes->bodies)) {
+        changes->peer = peer_create(choice, changes->bodies, PEER_LOW);
+    }
+    measure_exchange(changes);
+    peer_destroy(changes->peer);
+    changes_destroy(changes);
 }

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/* goals.h: what raygrid is to reach on each line that has a goal. Ratios are to Embree 4.4 in the same run. */
+#ifndef RAYGRID_BENCH_GOALS_H
+#define RAYGRID_BENCH_GOALS_H
+
+#include <stdint.h>
+
+struct bench_goal {
+    double value; /* NaN: none */
+    int on_ratio; /* the ratio is to be at least the value; else the figure is to be at most that */
+};
+
+/** What is to be reached. */
+enum bench_aim {
+    GOAL_COHERENT, /* whole batches of coherent rays, closest and any hit */
+    GOAL_COHERENT_STADIUM,
+    GOAL_INCOHERENT,  /* whole batches */
+    GOAL_SINGLE,      /* one incoherent ray a call */
+    GOAL_MOVE_SMALL,  /* ns: a tenth of the radius */
+    GOAL_MOVE_RADIUS, /* ns */
+    GOAL_INSERT,      /* ns */
+    GOAL_REMOVE,      /* ns */
+    GOAL_FRAME,
+    GOAL_LASTING, /* of the speed of a fresh scene */
+    GOAL_BYTES,   /* a sphere */
+    GOAL_TWO_THREADS,
+    GOALS
+};
+
+/** The goal for a scene of `count` objects: that of the nearest power of ten. */
+struct bench_goal bench_goal(enum bench_aim aim, uint32_t count);
+
+struct bench_goal bench_no_goal(void);
+
+#endif

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/* main.c: runs the sections that were asked for on the scenes that were asked for. */
+#include "bench.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LARGEST = 1000000 }; /* objects */
+
+/* What is done with one scene of one size. */
+struct section {
+    const char *name;
+    void (*run)(struct bench_run *run, const char *scene, uint32_t count);
+    bool spheres_only;
+};
+
+static const struct section SECTIONS[] = {
+    {"builds", bench_builds, false}, {"traces", bench_traces, false},  {"updates", bench_updates, false},
+    {"frames", bench_frames, false}, {"lasting", bench_lasting, true}, {"threads", bench_threads, true},
+};
+
+static bool holds_spheres_only(const char *scene) {
+    return strcmp(scene, "uniform") == 0 || strcmp(scene, "mixed") == 0 || strcmp(scene, "stadium") == 0;
+}
+
+/* The one scene that is as large as it is. */
+static void run_on_file(struct bench_run *run, const struct section *section) {
+    const struct bench_options *options = &run->options;
+    if (section->spheres_only || !options->gltf || options->sizes) return;
+    if (bench_wanted(options->scenes, BENCH_GLTF_SCENE)) section->run(run, BENCH_GLTF_SCENE, 0);
+}
+
+static void run_section(struct bench_run *run, const struct section *section) {
+    const struct bench_options *options = &run->options;
+    for (int s = 0; BENCH_SCENES[s]; s++) {
+        const char *scene = BENCH_SCENES[s];
+        bool spheres = holds_spheres_only(scene);
+        if (!bench_wanted(options->scenes, scene) || (section->spheres_only && !spheres)) continue;
+        uint32_t largest = spheres ? options->largest : options->largest_other;
+        for (uint32_t count = 1000; count <= LARGEST; count *= 10) {
+            char size[16];
+            snprintf(size, sizeof size, "%u", count);
+            if (options->sizes ? bench_wanted(options->sizes, size) : count <= largest)
+                section->run(run, scene, count);
+        }
+    }
+}
+
+static void name_versions(struct bench_report *report, const struct embree_api *api) {
+    uint32_t version = rg_version();
+    snprintf(report->own, sizeof report->own, "%u.%u.%u", version / 1000000, version / 1000 % 1000, version % 1000);
+    snprintf(report->compiler, sizeof report->compiler, "%s",
+#if defined(__clang__)
+             "clang " __clang_version__
+#else
+             "gcc " __VERSION__
+#endif
+    );
+    if (api) {
+        snprintf(report->peer, sizeof report->peer, "Embree %d.%d.%d", api->version / 10000, api->version / 100 % 100,
+                 api->version % 100);
+    }
+    snprintf(report->isa, sizeof report->isa, "unknown");
+    printf("raygrid %s (instructions: %s), %s; peer: %s\n", report->own, report->isa, report->compiler,
+           api ? report->peer : "none");
+}
+
+int main(int argc, char **argv) {
+    struct bench_run run = {0};
+    int status;
+    if (!bench_options_read(&run.options, argc, argv, &status)) return status;
+    struct embree_api *api = NULL;
+    if (strcmp(run.options.embree, "none") != 0) {
+        api = embree_open(run.options.embree, run.options.embree_config);
+        if (!api && strcmp(run.options.embree, "auto") != 0) return 2;
+    }
+    run.options.peer.api = api;
+    if (run.options.json && !(run.report.json = fopen(run.options.json, "w"))) {
+        perror(run.options.json);
+        return 2;
+    }
+    name_versions(&run.report, api);
+    for (size_t i = 0; i < sizeof SECTIONS / sizeof *SECTIONS; i++) {
+        if (!bench_wanted(run.options.sections, SECTIONS[i].name)) continue;
+        run_section(&run, &SECTIONS[i]);
+        run_on_file(&run, &SECTIONS[i]);
+    }
+    bench_report_end(&run.report);
+    bool unwritten = run.report.json && fclose(run.report.json) != 0;
+    if (unwritten) perror(run.options.json);
+    embree_close(api);
+    return unwritten || run.report.wrong ? 1 : 0;
+}

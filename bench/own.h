@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/* own.h: raygrid's side. Failures of the library end the benchmark. */
+#ifndef RAYGRID_BENCH_OWN_H
+#define RAYGRID_BENCH_OWN_H
+
+#include "rays.h"
+
+struct own {
+    const struct bench_scene *bodies;
+    rg_scene *scene;
+    rg_shape **shapes;
+    rg_object *objects;     /* of each body */
+    uint32_t *body_of_slot; /* the body in each slot of the scene */
+    uint32_t slots;         /* room in body_of_slot */
+    double filling;         /* seconds that inserting all bodies took */
+};
+
+/** A scene with all of `bodies`, which must outlive it, inserted at once. */
+struct own *own_create(const struct bench_scene *bodies, uint32_t workers);
+void own_destroy(struct own *own);
+
+/** Traces the rays with `a_call` rays a call, reading and writing the arrays by views. */
+void own_trace(struct own *own, const struct bench_rays *rays, uint32_t a_call, const struct bench_answers *answers);
+
+/** The body with that id, UINT32_MAX for none. */
+uint32_t own_body(const struct own *own, uint64_t id);
+
+/** Puts a body into the scene, where it must not be; removes one. */
+void own_insert(struct own *own, uint32_t body);
+void own_remove(struct own *own, uint32_t body);
+
+/** Moves objects in one call. */
+void own_move_many(struct own *own, const rg_object *objects, double (*positions)[3], uint32_t count);
+
+/** The scene and its shapes. */
+double own_bytes_per_object(const struct own *own);
+
+/** Prints what was wrong and ends the benchmark, unless the result is RG_OK. */
+void own_check(rg_result result);
+
+#endif

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""Turns the lines that the benchmark wrote with --json into the tables of docs/performance.md:
+table.py FILE [--only SECTION,...]. One table a section; goals that were missed are bold."""
+import argparse
+import json
+import sys
+
+HEAD = ('| what | figure | | peer | ratio | goal | wrong | t error | peer: wrong | t error | peer: way |\n'
+        '|---|---|---|---|---|---|---|---|---|---|---|')
+
+
+def short(number):
+    """Three digits, thousands whole."""
+    if number is None:
+        return ''
+    return f'{number:.0f}' if abs(number) >= 1000 else f'{number:.3g}'
+
+
+def goal(line):
+    if line['goal'] is None:
+        return ''
+    text = ('>= ' if line['goal_on'].startswith('ratio') else '<= ') + short(line['goal'])
+    return f'**{text}**' if line['reached'] is False else text
+
+
+def errors(line, side):
+    if line[side + 'checked'] is None:
+        return '', ''
+    error = line[side + 'worst_t_error']
+    return f"{line[side + 'wrong']} of {line[side + 'checked']}", f'{error:.0e}' if error else '0'
+
+
+def row(line):
+    what = line['name'].split('/', 1)[1]
+    cells = [what, short(line['figure']), line['unit'], short(line['peer_figure']), short(line['ratio']), goal(line),
+             *errors(line, ''), *errors(line, 'peer_'), line['peer_way'] or '']
+    return '| ' + ' | '.join(cells) + ' |'
+
+
+def markdown(lines):
+    """All tables, with what ran above them and what was missed below."""
+    parts = []
+    if lines:
+        first = lines[0]
+        versions = first['versions']
+        parts.append(f"raygrid {versions['raygrid']} (instructions: {first['isa']}), {versions['compiler']}; "
+                     f"peer: {versions['peer'] or 'none'}.")
+    for section in dict.fromkeys(line['name'].split('/')[0] for line in lines):
+        rows = [row(line) for line in lines if line['name'].split('/')[0] == section]
+        parts.append('\n'.join([f'### {section}', '', HEAD, *rows]))
+    missed = [line for line in lines if line['reached'] is False]
+    aimed = sum(line['reached'] is not None for line in lines)
+    parts.append(f'{aimed - len(missed)} of {aimed} goals reached; '
+                 f"wrong hits: raygrid {sum(line['wrong'] or 0 for line in lines)}, "
+                 f"peer {sum(line['peer_wrong'] or 0 for line in lines)}.")
+    return '\n\n'.join(parts) + '\n'
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('file', help='what --json wrote')
+    parser.add_argument('--only', help='sections, separated by commas')
+    arguments = parser.parse_args()
+    with open(arguments.file, encoding='utf-8') as file:
+        lines = [json.loads(text) for text in file]
+    if arguments.only:
+        wanted = set(arguments.only.split(','))
+        lines = [line for line in lines if line['name'].split('/')[0] in wanted]
+    sys.stdout.write(markdown(lines))
+
+
+if __name__ == '__main__':
+    main()
