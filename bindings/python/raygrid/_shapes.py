@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""Shapes: geometry that objects share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays
+from ._errors import check
+from ._raygrid import ffi, lib
+
+Triple = tuple[float, float, float]
+
+
+def triple(value: ArrayLike, name: str) -> list[float]:
+    array = _arrays.floats(value, name)
+    if array.shape != (3,):
+        raise ValueError(f"{name} must have the shape (3,), not {_arrays.seen(array)}")
+    return [float(number) for number in array]
+
+
+class Shape:
+    """Geometry in its own frame, which any number of objects in any number of scenes share.
+
+    Made by Sphere, Box, Capsule or Mesh, and never changed. An object holds on to its shape: one that was inserted
+    need not be kept.
+    """
+
+    __slots__ = ("_address", "_pointer")
+
+    _pointer: Any
+    _address: int
+
+    def __init__(self) -> None:
+        raise TypeError("shapes are made by Sphere, Box, Capsule or Mesh")
+
+    def _create(self, create: Callable[..., int], *arguments: Any) -> None:
+        made = ffi.new("rg_shape **")
+        check(create(ffi.NULL, *arguments, made))
+        self._own(made[0])
+
+    def _own(self, pointer: Any) -> None:
+        """Takes over one reference."""
+        self._pointer = ffi.gc(pointer, lib.py_shape_end)
+        self._address = int(ffi.cast("uintptr_t", pointer))
+
+    def _report(self) -> Any:
+        report = ffi.new("rg_shape_report *", {"size": ffi.sizeof("rg_shape_report")})
+        check(lib.rg_shape_stats(self._pointer, report))
+        return report
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """The lowest and the highest corner of the box that holds the shape, in its own frame; (2, 3) float64."""
+        report = self._report()
+        return np.array([list(report.lo), list(report.hi)])
+
+    @property
+    def triangle_count(self) -> int:
+        """The number of triangles of a mesh; 0 for all other shapes."""
+        return int(self._report().triangle_count)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of memory that the shape holds."""
+        return int(self._report().bytes)
+
+    def __eq__(self, other: object) -> bool:
+        return self._address == other._address if isinstance(other, Shape) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._address)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(f"a raygrid.{type(self).__name__} can't be pickled or copied: make it anew from its numbers")
+
+    def __repr__(self) -> str:
+        (lo, hi), triangles = self.bounds.tolist(), self.triangle_count
+        size = f"{triangles} triangles, " if triangles else ""
+        return f"<raygrid.{type(self).__name__}: {size}from {tuple(lo)} to {tuple(hi)}, {self.nbytes} bytes>"
+
+
+class Sphere(Shape):
+    """A sphere around the origin of its frame.
+
+    Spheres of many radii are one Sphere(1), inserted with a scale each.
+
+    >>> Sphere(2).bounds.tolist()
+    [[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]]
+    """
+
+    __slots__ = ()
+
+    def __init__(self, radius: float = 1.0) -> None:
+        self._create(lib.rg_shape_create_sphere, float(radius))
+
+
+class Box(Shape):
+    """A box with its faces in the axes' planes, from the corner `lo` to the corner `hi`, both (3,).
+
+    It may be flat, and endless on any axis (lo -inf, hi inf). Faces are primitives 0 to 5: -x, +x, -y, +y, -z, +z.
+
+    >>> Box((0, 0, 0), (1, 2, 3)).bounds.tolist()
+    [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
+    """
+
+    __slots__ = ()
+
+    def __init__(self, lo: ArrayLike, hi: ArrayLike) -> None:
+        self._create(lib.rg_shape_create_box, triple(lo, "lo"), triple(hi, "hi"))
+
+
+class Capsule(Shape):
+    """All points within `radius` of the segment from `a` to `b`, both (3,).
+
+    >>> Capsule((0, 0, 0), (0, 0, 4), 1).bounds.tolist()
+    [[-1.0, -1.0, -1.0], [1.0, 1.0, 5.0]]
+    """
+
+    __slots__ = ()
+
+    def __init__(self, a: ArrayLike, b: ArrayLike, radius: float) -> None:
+        self._create(lib.rg_shape_create_capsule, triple(a, "a"), triple(b, "b"), float(radius))
+
+
+class Mesh(Shape):
+    """Triangles. The data is copied.
+
+    vertices: (V, 3) float32 or float64.
+    indices: three vertices of each triangle, (T, 3) or (3 * T,) of any integer dtype; without them, triangle i has
+    the vertices 3 * i, 3 * i + 1 and 3 * i + 2.
+
+    >>> Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).triangle_count
+    1
+    """
+
+    __slots__ = ()
+
+    def __init__(self, vertices: ArrayLike, indices: ArrayLike | None = None) -> None:
+        corners = _arrays.floats(vertices, "vertices")
+        if corners.ndim != 2 or corners.shape[1] != 3:
+            raise ValueError(f"vertices must have the shape (V, 3), not {_arrays.seen(corners)}")
+        views = ffi.new("rg_mesh_views *", {"size": ffi.sizeof("rg_mesh_views")})
+        lib.py_input3(views, ffi.offsetof("rg_mesh_views", "vertices"), *three(corners))
+        views.vertex_count = len(corners)
+        views.triangle_count = len(corners) // 3
+        if indices is not None:
+            triangles = _arrays.unsigned(indices, "indices", INDEX_TYPES)
+            if triangles.ndim == 1 and triangles.size % 3 == 0:
+                triangles = triangles.reshape(-1, 3)
+            if triangles.ndim != 2 or triangles.shape[1] != 3:
+                raise ValueError(f"indices must have the shape (T, 3) or (3 * T,), not {_arrays.seen(triangles)}")
+            lib.py_input3(views, ffi.offsetof("rg_mesh_views", "indices"), *three(triangles))
+            views.triangle_count = len(triangles)
+        self._create(lib.rg_shape_create_mesh, views)
+
+
+INDEX_TYPES = (np.dtype(np.uint16), _arrays.U32, _arrays.U64)
+
+
+def three(array: NDArray[Any]) -> tuple[Any, int, int, int]:
+    return _arrays.pointer(array), array.strides[0], array.strides[1], _arrays.TYPES[array.dtype]
+
+
+CLASSES: dict[int, type[Shape]] = {
+    lib.RG_SHAPE_SPHERE: Sphere,
+    lib.RG_SHAPE_BOX: Box,
+    lib.RG_SHAPE_CAPSULE: Capsule,
+    lib.RG_SHAPE_MESH: Mesh,
+}
+
+
+def of_pointer(pointer: Any) -> Shape:
+    """The shape that an object of a scene has, with a reference of its own."""
+    report = ffi.new("rg_shape_report *", {"size": ffi.sizeof("rg_shape_report")})
+    check(lib.rg_shape_stats(pointer, report))
+    lib.rg_shape_retain(pointer)
+    kind = CLASSES.get(report.kind, Shape)
+    shape = kind.__new__(kind)
+    shape._own(pointer)
+    return shape
