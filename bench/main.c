@@ -60,7 +60,13 @@ static void name_versions(struct bench_report *report, const struct embree_api *
         snprintf(report->peer, sizeof report->peer, "Embree %d.%d.%d", api->version / 10000, api->version / 100 % 100,
                  api->version % 100);
     }
-    snprintf(report->isa, sizeof report->isa, "unknown");
+    static const char *const names[] = {"portable", "sse2", "avx2", "avx512", "neon"};
+    rg_scene_report scene_report = {.size = sizeof scene_report};
+    rg_scene *scene;
+    own_check(rg_scene_create(NULL, &scene));
+    own_check(rg_scene_stats(scene, &scene_report));
+    own_check(rg_scene_destroy(&scene));
+    snprintf(report->isa, sizeof report->isa, "%s", names[scene_report.isa]);
     printf("raygrid %s (instructions: %s), %s; peer: %s\n", report->own, report->isa, report->compiler,
            api ? report->peer : "none");
 }

@@ -242,6 +242,22 @@ void rgi_any_grid_settle(rgi_any_grid *store, rg_scene *scene, uint64_t changes)
     if (!result) store->unbounded_at = store->lattice.unbounded_count;
 }
 
+uint32_t rgi_any_grid_uses(const rgi_any_grid *store) {
+    uint32_t uses = 0;
+    if (rgi_any_grid_is_loose(store)) {
+        if (store->lattice.boxes) uses |= RG_WITHOUT_BOXES;
+        if (store->lattice.unbounded_count) uses |= RG_WITHOUT_UNBOUNDED;
+        return uses;
+    }
+    rg_grid_report report;
+    rgi_grid_report(&store->cells, &report);
+    uses |= RG_WITHOUT_BOXES;
+    if (report.unbounded) uses |= RG_WITHOUT_UNBOUNDED;
+    if (report.tiles > 1) uses |= RG_WITHOUT_TILES;
+    if (report.levels && report.levels_used == (uint32_t)((1ull << report.levels) - 1)) uses |= RG_WITHOUT_LEVELS;
+    return uses;
+}
+
 /* Those without a cell, but for the infinite, are in the logical box too. */
 static void hold_unbounded(const rgi_any_grid *grid, const rg_scene *scene, double lo[3], double hi[3]) {
     for (uint32_t i = 0; i < grid->lattice.unbounded_count; i++) {

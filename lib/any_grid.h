@@ -54,6 +54,9 @@ void rgi_any_grid_settle(rgi_any_grid *store, rg_scene *scene, uint64_t changes)
 rg_result rgi_any_grid_rebuild(rgi_any_grid *store, rg_scene *scene, uint32_t index);
 rg_result rgi_any_grid_configure(rgi_any_grid *store, rg_scene *scene, uint32_t index, const rg_grid_config *config);
 
+/** Bits of RG_WITHOUT_* of what rays in this grid can't do without. */
+uint32_t rgi_any_grid_uses(const rgi_any_grid *store);
+
 void rgi_any_grid_report(const rgi_any_grid *store, const rg_scene *scene, rg_grid_report *report);
 
 #endif

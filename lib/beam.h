@@ -120,6 +120,7 @@ float rgi_beam_below(const rgi_beam_scale *scale, float pad, double t);
 /** The kernels of one instruction set. */
 struct rgi_kernels {
     const char *name;
+    rg_isa isa;
     /** Makes a box hold all of a block. */
     void (*unite_block)(const rgi_block *block, float lo[3], float hi[3]);
     /** Scales the rays as rgi_ray_init; false if one is invalid, or extreme: then they are to be taken one by one. */

@@ -564,4 +564,4 @@ static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
 }
 
 const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
-    RGI_TEXT(RGI_NAME), unite_block, prepare, to_frame, bound, meet, trace_one, trace_some, trace_packet};
+    RGI_TEXT(RGI_NAME), RGI_ISA, unite_block, prepare, to_frame, bound, meet, trace_one, trace_some, trace_packet};

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "scene.h"
+#include "any_grid.h"
 
 #include "error.h"
 #include "struct_size.h"
 
+#include <stddef.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_WORKERS = 1024, CONFIG_LEAST = sizeof(rg_scene_config), REPORT_LEAST = sizeof(rg_scene_report) };
+enum { MAX_WORKERS = 1024, CONFIG_LEAST = sizeof(rg_scene_config), REPORT_LEAST = offsetof(rg_scene_report, isa) };
 
 /* ------------------------------------------------------------------------------------------------ the lock */
 
@@ -133,6 +134,20 @@ rg_result rg_scene_destroy(rg_scene **pointer) {
     return RG_OK;
 }
 
+static uint32_t left_out(const rg_scene *scene) {
+    uint32_t with = 0, holding = 0;
+    for (uint32_t i = 0; i < scene->grid_places; i++) {
+        const rgi_any_grid *grid = scene->grids[i].grid;
+        if (!grid || !grid->count) continue;
+        holding++;
+        with |= rgi_any_grid_uses(grid);
+    }
+    if (holding > 1) with |= RG_WITHOUT_GRIDS;
+    if (scene->masked) with |= RG_WITHOUT_MASKS;
+    if (rgi_pool_workers(scene->pool) != 1) with |= RG_WITHOUT_THREADS;
+    return ~with & (2 * RG_WITHOUT_THREADS - 1);
+}
+
 rg_result rg_scene_stats(rg_scene *scene, rg_scene_report *report) {
     rg_scene_report r;
     rgi_frame frame;
@@ -145,6 +160,8 @@ rg_result rg_scene_stats(rg_scene *scene, rg_scene_report *report) {
     r.invalid_rays = __atomic_load_n(&scene->invalid_rays, __ATOMIC_RELAXED);
     r.workers = rgi_pool_workers(scene->pool);
     r.grids = scene->grid_count;
+    r.isa = scene->kernels->isa;
+    r.left_out = left_out(scene);
     rgi_scene_end_read(scene, &frame);
     return rgi_struct_write(&r, sizeof r, REPORT_LEAST, report, "rg_scene_report");
 }

@@ -11,6 +11,7 @@
 #include <stdint.h>
 #include <string.h>
 
+/* As RG_ISA_* of raygrid/scene.h, for the preprocessor. */
 #define RGI_ISA_PORTABLE 0
 #define RGI_ISA_SSE2 1
 #define RGI_ISA_AVX2 2

@@ -182,6 +182,22 @@ typedef struct rg_object_report {
 /** Looks an object up. Errors: RG_INVALID_ARGUMENT, RG_INVALID_ID. Cost: constant. */
 RG_API rg_result rg_scene_lookup(rg_scene *scene, rg_object object, rg_object_report *report);
 
+/** The instructions that the kernels of a scene use: the best that were built and that the processor has. */
+typedef int32_t rg_isa;
+
+enum { RG_ISA_PORTABLE = 0, RG_ISA_SSE2 = 1, RG_ISA_AVX2 = 2, RG_ISA_AVX512 = 3, RG_ISA_NEON = 4 };
+
+/** What traces of a scene do without, because it holds nothing that needs it. Bits, as the scene is now. */
+enum {
+    RG_WITHOUT_BOXES = 1,     /* spheres only, in grids of the loose kind: no boxes are tested in leaves */
+    RG_WITHOUT_MASKS = 2,     /* no object was ever given a mask that hides it from some rays */
+    RG_WITHOUT_UNBOUNDED = 4, /* every object has cells: none is tested for every ray */
+    RG_WITHOUT_TILES = 8,     /* nothing has left the physical boxes of grids of the paper's kinds */
+    RG_WITHOUT_LEVELS = 16,   /* grids of the hierarchical kind: levels that hold nothing are passed over */
+    RG_WITHOUT_GRIDS = 32,    /* at most one grid holds objects: rays do not go from grid to grid */
+    RG_WITHOUT_THREADS = 64   /* the calling thread traces alone */
+};
+
 /** What is known of a scene. Set `size` before the call; the library fills what both sides know. */
 typedef struct rg_scene_report {
     size_t size;
@@ -191,6 +207,8 @@ typedef struct rg_scene_report {
     uint64_t invalid_rays; /* rays refused as invalid by all traces so far */
     uint32_t workers;      /* threads that trace together, the calling one among them; 0 with a host's parallel_for */
     uint32_t grids;
+    rg_isa isa;
+    uint32_t left_out; /* bits of RG_WITHOUT_* */
 } rg_scene_report;
 
 /** Fills `report`. Errors: RG_INVALID_ARGUMENT. */

@@ -153,7 +153,7 @@ FIELD(rg_object_report, grid, 92);
 FIELD(rg_object_report, lo, 96);
 FIELD(rg_object_report, hi, 120);
 
-SIZE(rg_scene_report, 48);
+SIZE(rg_scene_report, 56);
 FIELD(rg_scene_report, size, 0);
 FIELD(rg_scene_report, objects, 8);
 FIELD(rg_scene_report, slots, 16);
@@ -161,6 +161,8 @@ FIELD(rg_scene_report, bytes, 24);
 FIELD(rg_scene_report, invalid_rays, 32);
 FIELD(rg_scene_report, workers, 40);
 FIELD(rg_scene_report, grids, 44);
+FIELD(rg_scene_report, isa, 48);
+FIELD(rg_scene_report, left_out, 52);
 
 /* trace.h */
 

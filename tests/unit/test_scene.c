@@ -320,6 +320,49 @@ START_TEST(scales) {
 }
 END_TEST
 
+static uint32_t left_out(void) {
+    rg_scene_report report = {.size = sizeof report};
+    ck_assert_int_eq(rg_scene_stats(scene, &report), RG_OK);
+    return report.left_out;
+}
+
+/* What the scene holds nothing of is left out, and is no more once it holds some. */
+START_TEST(what_is_left_out) {
+    rg_shape *plane, *cube;
+    rg_grid_config config;
+    rg_grid grid;
+    rg_object ids[40];
+    const double lo[3] = {-INFINITY, -INFINITY, -3}, hi[3] = {INFINITY, INFINITY, -2}, one[3] = {1, 1, 1};
+    ck_assert_int_eq(rg_shape_create_box(NULL, lo, hi, &plane), RG_OK);
+    ck_assert_int_eq(rg_shape_create_box(NULL, one, one, &cube), RG_OK);
+    rg_pose pose = rg_pose_at(0, 0, 0);
+    ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, &ids[0]), RG_OK);
+    const uint32_t all = RG_WITHOUT_BOXES | RG_WITHOUT_MASKS | RG_WITHOUT_UNBOUNDED | RG_WITHOUT_TILES |
+                         RG_WITHOUT_LEVELS | RG_WITHOUT_GRIDS;
+    ck_assert_uint_eq(left_out() & ~RG_WITHOUT_THREADS, all);
+    ck_assert_int_eq(rg_scene_insert(scene, cube, &pose, &ids[1]), RG_OK);
+    ck_assert_uint_eq(left_out() & all, all & ~RG_WITHOUT_BOXES);
+    ck_assert_int_eq(rg_scene_insert(scene, plane, &pose, &ids[2]), RG_OK);
+    ck_assert_uint_eq(left_out() & all, all & ~(RG_WITHOUT_BOXES | RG_WITHOUT_UNBOUNDED));
+    ck_assert_int_eq(rg_scene_remove(scene, ids[2]), RG_OK);
+    ck_assert_int_eq(rg_scene_set_mask(scene, ids[0], 1), RG_OK);
+    ck_assert_uint_eq(left_out() & all, all & ~(RG_WITHOUT_BOXES | RG_WITHOUT_MASKS));
+    ck_assert_int_eq(rg_grid_config_default(&config, sizeof config), RG_OK);
+    config.kind = RG_GRID_UNIFORM;
+    config.resolution = 4;
+    config.rebuild_factor = RG_REBUILD_NEVER;
+    for (int a = 0; a < 3; a++) config.hi[a] = 4;
+    ck_assert_int_eq(rg_grid_create(scene, &config, &grid), RG_OK);
+    rg_pose_views poses;
+    ck_assert_int_eq(rg_pose_views_of(&poses, sizeof poses, &pose, 0), RG_OK);
+    rg_insert_views views = {.size = sizeof views, .shapes = &ball, .poses = &poses, .grid = grid};
+    ck_assert_int_eq(rg_scene_insert_many(scene, &views, 1, NULL), RG_OK);
+    ck_assert(!(left_out() & RG_WITHOUT_GRIDS) && !(left_out() & RG_WITHOUT_TILES));
+    rg_shape_release(&plane);
+    rg_shape_release(&cube);
+}
+END_TEST
+
 /* Moves of many keep what their views do not give. */
 START_TEST(moves_keep_what_is_not_given) {
     rg_pose pose = rg_pose_at(1, 2, 3);
@@ -525,6 +568,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, columns_in_double_are_rounded);
     tcase_add_test(tests, several_grids);
     tcase_add_test(tests, scales);
+    tcase_add_test(tests, what_is_left_out);
     tcase_add_test(tests, moves_keep_what_is_not_given);
     tcase_add_test(tests, no_ray_hits_where_it_starts);
     suite_add_tcase(suite, tests);

@@ -27,7 +27,7 @@ from ._errors import (
 from ._grids import REBUILD_NEVER, Grid, GridConfig, GridKind, GridReport
 from ._hits import Hits
 from ._raygrid import lib as _lib
-from ._scene import Candidate, Cull, ObjectReport, Scene, SceneReport
+from ._scene import Candidate, Cull, Isa, ObjectReport, Scene, SceneReport, Without
 from ._shapes import Box, Capsule, Mesh, Shape, Sphere
 
 __version__ = "{}.{}.{}".format(*(_lib.rg_version() // 1000**place % 1000 for place in (2, 1, 0)))
@@ -38,13 +38,9 @@ COORDINATE_MAX: float = _lib.RG_COORDINATE_MAX
 RADIUS_MIN: float = _lib.RG_RADIUS_MIN
 
 __all__ = [
-    "COORDINATE_MAX",
-    "NO_OBJECT",
-    "NO_PRIMITIVE",
-    "RADIUS_MIN",
-    "REBUILD_NEVER",
     "Box",
     "Busy",
+    "COORDINATE_MAX",
     "CallbackFailed",
     "Candidate",
     "Capsule",
@@ -58,15 +54,21 @@ __all__ = [
     "InvalidArgument",
     "InvalidId",
     "InvalidValue",
+    "Isa",
     "LimitExceeded",
     "Mesh",
+    "NO_OBJECT",
+    "NO_PRIMITIVE",
     "ObjectReport",
     "OutOfMemory",
     "OutOfThreads",
+    "RADIUS_MIN",
+    "REBUILD_NEVER",
     "Scene",
     "SceneReport",
     "Shape",
     "Sphere",
+    "Without",
 ]
 
 # Users see the names that they import.

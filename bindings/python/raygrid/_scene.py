@@ -30,9 +30,32 @@ class Cull(enum.IntEnum):
     FRONT = lib.RG_CULL_FRONT
 
 
+class Isa(enum.IntEnum):
+    """The instructions that the kernels of a scene use."""
+
+    PORTABLE = lib.RG_ISA_PORTABLE
+    SSE2 = lib.RG_ISA_SSE2
+    AVX2 = lib.RG_ISA_AVX2
+    AVX512 = lib.RG_ISA_AVX512
+    NEON = lib.RG_ISA_NEON
+
+
+class Without(enum.IntFlag):
+    """What traces of a scene do without, because it holds nothing that needs it."""
+
+    BOXES = lib.RG_WITHOUT_BOXES
+    MASKS = lib.RG_WITHOUT_MASKS
+    UNBOUNDED = lib.RG_WITHOUT_UNBOUNDED
+    TILES = lib.RG_WITHOUT_TILES
+    LEVELS = lib.RG_WITHOUT_LEVELS
+    GRIDS = lib.RG_WITHOUT_GRIDS
+    THREADS = lib.RG_WITHOUT_THREADS
+
+
 @dataclass(frozen=True)
 class SceneReport:
-    """What is known of a scene: counts, bytes of memory (shapes not counted), and threads that trace together."""
+    """What is known of a scene: counts, bytes of memory (shapes not counted), threads that trace together, the
+    instructions that its kernels use, and what its traces leave out."""
 
     objects: int
     slots: int
@@ -40,6 +63,8 @@ class SceneReport:
     invalid_rays: int
     workers: int
     grids: int
+    isa: Isa
+    left_out: Without
 
 
 @dataclass(frozen=True, eq=False)
@@ -481,7 +506,8 @@ class Scene:
         report = ffi.new("rg_scene_report *", {"size": ffi.sizeof("rg_scene_report")})
         check(lib.rg_scene_stats(self._open(), report))
         names = ("objects", "slots", "bytes", "invalid_rays", "workers", "grids")
-        return SceneReport(**{name: getattr(report, name) for name in names})
+        counts = {name: getattr(report, name) for name in names}
+        return SceneReport(**counts, isa=Isa(report.isa), left_out=Without(report.left_out))
 
     def __reduce__(self) -> NoReturn:
         raise TypeError("a raygrid.Scene can't be pickled or copied: insert its objects into a new one")

@@ -32,6 +32,8 @@ def test_kinds() -> None:
     grids = {name: value for name, value in constants("RG_GRID_").items() if name != "OF_SCENE"}
     assert {kind.name: kind.value for kind in raygrid.GridKind} == grids
     assert {cull.name: cull.value for cull in raygrid.Cull} == constants("RG_CULL_")
+    assert {isa.name: isa.value for isa in raygrid.Isa} == constants("RG_ISA_")
+    assert {bit.name: bit.value for bit in raygrid.Without} == constants("RG_WITHOUT_")
     assert set(_shapes.CLASSES) | {lib.RG_SHAPE_USER} == set(constants("RG_SHAPE_").values())
 
 
