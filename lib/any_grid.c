@@ -204,7 +204,7 @@ rg_result rgi_any_grid_rebuild(rgi_any_grid *store, rg_scene *scene, uint32_t in
  * drifted so many radii away from its origin, or when too many are out of its reach. Either takes as many changes as
  * there are objects, or twice the number that there was.
  */
-enum { LOOK_AFTER = 256, MANY_UNBOUNDED = 16, FAR_AWAY = 64 };
+enum { LOOK_AFTER = 256, MANY_UNBOUNDED = 16, FAR_AWAY = 4 };
 
 static const char *why_new_frame(const rgi_any_grid *grid) {
     const rgi_middle middle = rgi_lattice_middle(&grid->lattice);

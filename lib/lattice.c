@@ -281,7 +281,7 @@ static void remove_bounded(rgi_lattice *lattice, const rgi_location *place) {
     }
     rgi_ref head = *rgi_lattice_holder(lattice, parent);
     if (head)
-        rgi_lattice_loosened(lattice, parent, rgi_block_at(lattice, head));
+        rgi_lattice_loosened(lattice, parent, rgi_block_at(lattice, head), true);
     else if ((parent & 15) != RGI_OWN || parent == RGI_ROOT)
         rgi_lattice_clear_box(lattice, parent);
     clean(lattice, parent);
@@ -315,7 +315,7 @@ static void stay(rgi_lattice *lattice, const rgi_location *place, const rgi_entr
     rgi_entry_write_bounds(b, place->lane, e);
     rgi_lattice_grow(lattice, parent, e->lo, e->hi);
     if (b->previous) b = rgi_block_at(lattice, *rgi_lattice_holder(lattice, parent));
-    rgi_lattice_loosened(lattice, parent, b);
+    rgi_lattice_loosened(lattice, parent, b, false);
 }
 
 bool rgi_lattice_reaches(const rgi_lattice *lattice, const double position[3], double radius) {

@@ -246,10 +246,9 @@ static void tighten_above(rgi_lattice *lattice, uint32_t parent) {
     }
 }
 
-/* An object of the chain at `parent` has moved or gone. */
-void rgi_lattice_loosened(rgi_lattice *lattice, uint32_t parent, rgi_block *first) {
+void rgi_lattice_loosened(rgi_lattice *lattice, uint32_t parent, rgi_block *first, bool gone) {
     float lo[3], hi[3];
-    if (++first->stale < STALE_LEAF) return;
+    if (++first->stale < STALE_LEAF && !gone) return;
     first->stale = 0;
     if ((parent & 15) != RGI_OWN || parent == RGI_ROOT) {
         rgi_bounds_empty(lo, hi);

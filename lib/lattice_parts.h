@@ -46,8 +46,9 @@ void rgi_lattice_grow(rgi_lattice *lattice, uint32_t parent, const float lo[3], 
 void rgi_bounds_unite(float lo[3], float hi[3], const float lo2[3], const float hi2[3]);
 void rgi_bounds_empty(float lo[3], float hi[3]);
 
-/** An object of the chain at `parent` has moved or gone; `first` is the first block of the chain. */
-void rgi_lattice_loosened(rgi_lattice *lattice, uint32_t parent, rgi_block *first);
+/** An object of the chain at `parent` has moved within its cell, or is `gone`; `first` is the first block. Makes
+ * boxes tight: what is gone leaves more room than what has moved, so it counts for more. */
+void rgi_lattice_loosened(rgi_lattice *lattice, uint32_t parent, rgi_block *first, bool gone);
 
 /** Changes the number of objects that the node of `parent` holds itself. */
 void rgi_lattice_count_members(rgi_lattice *lattice, uint32_t parent, int change);
