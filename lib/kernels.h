@@ -223,8 +223,55 @@ RGI_INLINE bool step(const rgi_lattice *lattice, rgi_beam *b, bool ahead) {
     return true;
 }
 
+/* Bit i of the result is bit i ^ flip of `bits`: octants in the order in which a ray comes to them. */
+RGI_INLINE uint32_t flip_order(uint32_t bits, uint32_t flip) {
+    if (flip & 1) bits = (bits & 0x55) << 1 | (bits >> 1 & 0x55);
+    if (flip & 2) bits = (bits & 0x33) << 2 | (bits >> 2 & 0x33);
+    if (flip & 4) bits = (bits & 0x0F) << 4 | bits >> 4;
+    return bits;
+}
+
+/*
+ * Alone, a ray waits for each result: so the nearest octant is gone into at once, without a way over the stack, and
+ * only the others are put there.
+ */
 static void trace_one(const rgi_lattice *lattice, rgi_beam *b) {
-    while (step(lattice, b, false)) continue;
+    for (;;) {
+        float t;
+        do {
+            if (b->depth == 0) return;
+            t = b->ts[--b->depth];
+        } while (t > b->t_max);
+        rgi_ref ref = b->refs[b->depth];
+        while (!rgi_is_block(ref)) {
+            const rgi_node *n = rgi_arena_at(&lattice->arena, ref);
+            f8 ts;
+            b->nodes++;
+            if (b->depth + 2 * RGI_OCTANTS + 1 > RGI_STACK) {
+                if (walk_node_below(lattice, b, n)) return;
+                ref = 0;
+                break;
+            }
+            uint32_t met = meet_octants(n, b, &ts);
+            if (n->own || !met) {
+                b->depth += f8_keep(met, orders[b->negative], ts, n->child, b->ts + b->depth, b->refs + b->depth);
+                ref = n->own;
+                break;
+            }
+            uint32_t nearest = (uint32_t)__builtin_ctz(flip_order(met, b->negative)) ^ b->negative;
+            ref = n->child[nearest];
+            met &= ~(1u << nearest);
+            if (met)
+                b->depth += f8_keep(met, orders[b->negative], ts, n->child, b->ts + b->depth, b->refs + b->depth);
+        }
+        for (; ref; ref = rgi_block_at(lattice, ref)->next) {
+            b->nodes++;
+            b->block = ref;
+            b->waiting = meet_block(rgi_block_at(lattice, ref), b);
+            if (b->waiting && ask_waiting(lattice, b)) return;
+            if (b->hit) return;
+        }
+    }
 }
 
 static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count) {

@@ -124,11 +124,11 @@ typedef struct rgi_lattice {
     size_t place_offset; /* of the place in such a record */
     rgi_arena arena;
     rgi_ref root;
-    float lo[3], hi[3]; /* holds all that is below the root */
-    double origin[3], scale;
-    uint64_t count;      /* objects below the root */
-    bool boxes;          /* there have been others than balls */
-    uint32_t *unbounded; /* slots of what no float can hold */
+    float lo[3], hi[3];            /* holds all that is below the root */
+    double origin[3], scale, unit; /* powers of two: scale * unit = 1 */
+    uint64_t count;                /* objects below the root */
+    bool boxes;                    /* there have been others than balls */
+    uint32_t *unbounded;           /* slots of what no float can hold */
     uint32_t unbounded_count;
     uint64_t unbounded_room;
 } rgi_lattice;
@@ -180,7 +180,7 @@ typedef struct rgi_middle {
     double centre[3]; /* relative to the frame's origin, in world units */
     double radius;    /* in world units */
     double extent;    /* the largest coordinates along the axes, added up, in units of the frame */
-    float spacing;    /* 1 / cube root of the number of objects: how far apart they are, in parts of the whole */
+    float spacing;    /* near 1 / cube root of the number of objects: how far apart they are, in parts of the whole */
 } rgi_middle;
 
 rgi_middle rgi_lattice_middle(const rgi_lattice *lattice);

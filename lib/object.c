@@ -15,6 +15,16 @@ static double power_of_two(int e) {
     return value;
 }
 
+/* The e for which 2^e <= x < 2^(e + 1), for 0 < x < infinity. */
+static int exponent_of(double x) {
+    uint64_t bits;
+    int exponent;
+    memcpy(&bits, &x, sizeof bits);
+    if (bits >> 52) return (int)(bits >> 52) - 1023;
+    frexp(x, &exponent);
+    return exponent - 1;
+}
+
 /*
  * A limit of t in scaled units. What underflows keeps its sign: t = 0 is out of the range of a ray that starts at the
  * smallest t above it. The caller has clipped it to where t in its own units is a double: a hit must not look like a
@@ -31,9 +41,7 @@ bool rgi_ray_init(rgi_ray *ray, const double origin[3], const double direction[3
     for (int i = 0; i < 3; i++) valid &= fabs(origin[i]) <= RG_COORDINATE_MAX && fabs(direction[i]) <= DBL_MAX;
     double largest = rgi_max_magnitude(direction);
     if (!valid || largest == 0) return false;
-    int exponent;
-    frexp(largest, &exponent);
-    exponent -= 1;
+    int exponent = exponent_of(largest);
     int half = exponent / 2;
     ray->to_world = power_of_two(-half);
     ray->to_world2 = power_of_two(-(exponent - half));

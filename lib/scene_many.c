@@ -108,6 +108,16 @@ static rg_result insert_nth(rg_scene *scene, const rg_insert_views *views, uint6
     return result ? result : rgi_insert_one(scene, shape, &p, mask, grid, id);
 }
 
+/* Undoes the insert made last, so that the next one gets the same id. `stored`: in its grid, too. */
+static void take_back(rg_scene *scene, uint32_t slot, bool stored) {
+    rgi_object *object = rgi_scene_object(scene, slot);
+    uint32_t generation = object->generation;
+    rg_shape *shape = stored ? rgi_remove_one(scene, slot) : rgi_empty_object(scene, slot);
+    object->generation = generation;
+    rgi_slots_trim(&scene->objects);
+    rg_shape_release(&shape);
+}
+
 /* One after another. What a lattice takes is not known before it is taken: where memory ends on the way, what was
  * inserted goes again. */
 static rg_result insert_each(rg_scene *scene, const rg_insert_views *views, uint64_t count, uint32_t grid,
@@ -115,10 +125,7 @@ static rg_result insert_each(rg_scene *scene, const rg_insert_views *views, uint
     for (uint64_t i = 0; i < count; i++) {
         rg_result result = insert_nth(scene, views, i, grid, &ids[i]);
         if (!result) continue;
-        while (i > 0) {
-            rg_shape *shape = rgi_remove_one(scene, RG_OBJECT_SLOT(ids[--i]));
-            rg_shape_release(&shape);
-        }
+        while (i > 0) take_back(scene, RG_OBJECT_SLOT(ids[--i]), true);
         return result;
     }
     return RG_OK;
@@ -140,11 +147,7 @@ static rg_result insert_bulk(rg_scene *scene, const rg_insert_views *views, uint
     }
     result = rgi_any_grid_fill(scene->grids[grid].grid, scene, slots, count);
     if (result) rgi_any_grid_clear(scene->grids[grid].grid, scene);
-    for (uint64_t i = count; i > 0 && result; i--) {
-        rg_shape *shape = rgi_empty_object(scene, slots[i - 1]);
-        rgi_slots_trim(&scene->objects);
-        rg_shape_release(&shape);
-    }
+    for (uint64_t i = count; i > 0 && result; i--) take_back(scene, slots[i - 1], false);
     rgi_release(&scene->memory, slots, count, sizeof *slots);
     return result;
 }

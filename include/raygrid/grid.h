@@ -5,8 +5,9 @@
  * A scene has one grid from the start, RG_GRID_OF_SCENE, and nobody needs to know of it. A host may add more, each of
  * its own kind, for instance one for what never moves. Every object is in exactly one; a trace goes through all.
  *
- * The two kinds follow E. Reinhard, B. Smits, C. Hansen, "Dynamic Acceleration Structures for Interactive Ray
- * Tracing" (Eurographics Workshop on Rendering 2000, the parts on grids and on hierarchical grids):
+ * The default kind is RG_GRID_LOOSE, see there. The other two follow E. Reinhard, B. Smits, C. Hansen, "Dynamic
+ * Acceleration Structures for Interactive Ray Tracing" (Eurographics Workshop on Rendering 2000, the parts on grids and
+ * on hierarchical grids):
  *   - The physical box is where the cells are. Space is tiled by copies of it: a place outside has the cell at the
  *     same place in its own tile, so an object that leaves the box re-enters on the other side. Each entry of a cell
  *     carries its tile, and a ray passes over entries of other tiles.
@@ -46,8 +47,10 @@ enum {
     RG_GRID_HIERARCHICAL = 2,
     /**
      * A lattice of cells, each half as wide as the one above it, made where objects are. An object is stored once, by
-     * its centre, in a cell that fits its size; tight boxes around what is stored decide what a ray looks into. It has
-     * no box that objects could leave, so nothing is rebuilt; resolution, lo, hi and rebuild_factor have no meaning.
+     * its centre, in a cell that fits its size; tight boxes around what is stored decide what a ray looks into. Cells
+     * hold floats, relative to an origin and a unit that were chosen from the objects. It has no box that objects could
+     * leave: resolution, lo, hi and rebuild_factor have no meaning, and it is made anew by itself only when all objects
+     * have drifted four radii of the whole away from that origin, or when many are out of floats' reach.
      */
     RG_GRID_LOOSE = 3
 };
