@@ -70,8 +70,9 @@ void read_size(const std::string &text, Options &options) {
 rg_grid_kind grid_kind(const std::string &text) {
     if (text == "uniform") return RG_GRID_UNIFORM;
     if (text == "hierarchical") return RG_GRID_HIERARCHICAL;
+    if (text == "loose") return RG_GRID_LOOSE;
     if (text == "default") return RG_GRID_DEFAULT;
-    throw UsageError("--grid wants uniform, hierarchical or default, not '" + text + "'");
+    throw UsageError("--grid wants uniform, hierarchical, loose or default, not '" + text + "'");
 }
 
 void read_option(int flag, const std::string &text, Options &options) {
@@ -161,7 +162,7 @@ std::string usage() {
            "  --workers N        threads that trace; 0: one a processor (" +
            text(normal.workers) +
            ")\n"
-           "  --grid KIND        uniform, hierarchical or default\n"
+           "  --grid KIND        uniform, hierarchical, loose or default\n"
            "  --samples N        primary rays a pixel (" +
            text(normal.samples) +
            ")\n"

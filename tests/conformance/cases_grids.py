@@ -111,7 +111,7 @@ def configured():
     scene(case)
     case.insert("late", "b", (7.5, 12.5, 0.75))
     case.trace(*rays)
-    for kind in ("uniform", "hierarchical"):
+    for kind in ("uniform", "loose", "hierarchical"):
         for options in (dict(), dict(resolution=5), dict(resolution=64),
                         dict(resolution=4, lo=(-1.0, -1.0, -1.0), hi=(1.0, 2.0, 0.5), rebuild_factor="never"),
                         dict(resolution=16, lo=(100.0,) * 3, hi=(200.0,) * 3, rebuild_factor="never"),

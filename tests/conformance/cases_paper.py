@@ -9,6 +9,7 @@ from cases_grid import unit_cells
 from script import Case, ray
 
 UNIFORM, HIERARCHICAL = ["uniform"], ["hierarchical"]
+BOTH = UNIFORM + HIERARCHICAL  # where cells are counted
 
 
 def off_axis(axis, x, y=0.5, z=0.5):
@@ -21,7 +22,7 @@ def off_axis(axis, x, y=0.5, z=0.5):
 def tiles():
     for axis in range(3):
         case = Case(f"tile-mark-{'xyz'[axis]}", "an object of another tile in the same cell is not tested",
-                    grid=unit_cells(8))
+                    grids=BOTH, grid=unit_cells(8))
         case.sphere("s", 0.25)
         along = off_axis(axis, 0, 1, 0)
         # The ends make the logical box and the tiles; the cell of interest is 4 along the axis.
@@ -40,7 +41,7 @@ def tiles():
         yield case
 
     case = Case("tile-mark-aliases", "a mark of two bits makes all outside tiles one: a ray tests its own tile's",
-                grid=unit_cells(8))
+                grids=BOTH, grid=unit_cells(8))
     case.sphere("s", 0.25)
     numbers = list(range(-6, 7))
     case.insert_many("a", "s", [(8.0 * k + 0.5, 0.5, 0.5) for k in numbers])
@@ -131,7 +132,7 @@ def logical():
     yield case
 
     case = Case("logical-box-ends-walk", "a ray ends where it leaves the logical box, though cells go on",
-                grid=unit_cells(64))
+                grids=BOTH, grid=unit_cells(64))
     case.sphere("s", 0.25)
     case.insert_many("a", "s", [(1.5, 1.5, 1.5), (3.5, 3.5, 3.5)])
     case.trace(ray((2.5, 2.5, 2.5), (1, 0, 0), want="miss", give={"cells_max": 3}),
@@ -142,7 +143,7 @@ def logical():
                ray((1.5, 1.5, -5), (0, 0, 1), want=("a[0]", 6.25), give={"cells_max": 2}))
     yield case
 
-    case = Case("walk-ends-at-t-max", "a ray looks into no cell beyond t_max", grid=unit_cells(64))
+    case = Case("walk-ends-at-t-max", "a ray looks into no cell beyond t_max", grids=BOTH, grid=unit_cells(64))
     case.sphere("s", 0.25)
     case.insert_many("a", "s", [(0.5, 0.5, 0.5), (63.5, 63.5, 63.5), (60.5, 2.5, 2.5)])
     case.trace(ray((2.5, 2.5, 2.5), (1, 0, 0), t_max=2.0, want="miss", give={"cells_max": 4, "tests": 0}),
@@ -152,7 +153,7 @@ def logical():
     yield case
 
     case = Case("walk-stops-early", "a ray stops at the first cell with a hit nearer than the next cell",
-                grid=unit_cells(64))
+                grids=BOTH, grid=unit_cells(64))
     case.sphere("s", 0.25)
     case.insert_many("a", "s", [(2.5, 2.5, 2.5)] + [(10.5 + i, 2.5, 2.5) for i in range(50)] + [(0.5, 0.5, 0.5)])
     case.trace(ray((0.5, 2.5, 2.5), (1, 0, 0), want=("a[0]", 1.75), give={"cells_max": 4, "tests": 1}),

@@ -54,7 +54,7 @@ static bool holds_here(const context *c, const json_t *step) {
 }
 
 static void expect_grid(context *c, const json_t *step) {
-    static const char *const kinds[] = {"default", "uniform", "hierarchical"};
+    static const char *const kinds[] = {"default", "uniform", "hierarchical", "loose"};
     rg_grid_report r = {.size = sizeof r};
     const char *kind = json_string_value(json_object_get(step, "kind"));
     const json_t *resolution = json_object_get(step, "resolution");
@@ -63,7 +63,7 @@ static void expect_grid(context *c, const json_t *step) {
         fail(c, "%s", rg_error_message());
         return;
     }
-    if (kind && (r.kind < 1 || r.kind > 2 || strcmp(kinds[r.kind], kind) != 0))
+    if (kind && (r.kind < 1 || r.kind > 3 || strcmp(kinds[r.kind], kind) != 0))
         fail(c, "kind is %d, expected %s", (int)r.kind, kind);
     for (size_t a = 0; a < json_array_size(resolution); a++) {
         if (json_integer_value(json_array_get(resolution, a)) != (json_int_t)r.resolution[a])

@@ -15,6 +15,7 @@ import cases_box
 import cases_capsule
 import cases_grid
 import cases_grids
+import cases_loose
 import cases_paper
 import cases_pose
 import cases_query
@@ -28,7 +29,8 @@ HERE = Path(__file__).resolve().parent
 TOPICS = {
     "sphere": cases_sphere, "box": cases_box, "capsule": cases_capsule, "triangle": cases_triangle,
     "pose": cases_pose,
-    "query": cases_query, "scene": cases_scene, "grid": cases_grid, "grids": cases_grids, "paper": cases_paper,
+    "query": cases_query, "scene": cases_scene, "grid": cases_grid, "grids": cases_grids, "loose": cases_loose,
+    "paper": cases_paper,
     "random": cases_random,
 }
 LEAST = 120  # cases

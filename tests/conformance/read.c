@@ -159,6 +159,7 @@ static rg_grid_kind kind_of(context *c, const json_t *value) {
     if (text && strcmp(text, "default") == 0) return RG_GRID_DEFAULT;
     if (text && strcmp(text, "uniform") == 0) return RG_GRID_UNIFORM;
     if (text && strcmp(text, "hierarchical") == 0) return RG_GRID_HIERARCHICAL;
+    if (text && strcmp(text, "loose") == 0) return RG_GRID_LOOSE;
     malformed(c, "\"%s\" is no kind of grid", text ? text : "?");
     return RG_GRID_DEFAULT;
 }

@@ -12,9 +12,14 @@
 #include <string.h>
 
 static const setup setups[] = {
-    {"uniform", RG_GRID_UNIFORM, false, false},        {"hierarchical", RG_GRID_HIERARCHICAL, false, false},
-    {"uniform-tiled", RG_GRID_UNIFORM, true, false},   {"hierarchical-tiled", RG_GRID_HIERARCHICAL, true, false},
-    {"uniform-rebuilt", RG_GRID_UNIFORM, false, true}, {"hierarchical-rebuilt", RG_GRID_HIERARCHICAL, false, true},
+    {"uniform", RG_GRID_UNIFORM, false, false},
+    {"hierarchical", RG_GRID_HIERARCHICAL, false, false},
+    {"loose", RG_GRID_LOOSE, false, false},
+    {"uniform-tiled", RG_GRID_UNIFORM, true, false},
+    {"hierarchical-tiled", RG_GRID_HIERARCHICAL, true, false},
+    {"uniform-rebuilt", RG_GRID_UNIFORM, false, true},
+    {"hierarchical-rebuilt", RG_GRID_HIERARCHICAL, false, true},
+    {"loose-rebuilt", RG_GRID_LOOSE, false, true},
 };
 
 typedef struct tally {

@@ -28,8 +28,9 @@ static bool same_pose(const rg_pose *a, const rg_pose *b) {
 
 /* Looks every object up; `boxes` counts those of each grid and gathers their finite bounds. */
 typedef struct grid_books {
-    uint64_t objects;
-    double lo[3], hi[3];
+    uint64_t objects, infinite;
+    double lo[3], hi[3];           /* of the finite ones, as the reference has them */
+    double told_lo[3], told_hi[3]; /* of the same, as the library looks them up */
 } grid_books;
 
 static int index_of_grid(const world *w, rg_grid grid) {
@@ -42,7 +43,11 @@ static int index_of_grid(const world *w, rg_grid grid) {
 
 static void gather(const world *w, grid_books books[WORLD_GRIDS]) {
     for (int g = 0; g < WORLD_GRIDS; g++) {
-        books[g] = (grid_books){0, {HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+        books[g] = (grid_books){0};
+        for (int i = 0; i < 3; i++) {
+            books[g].lo[i] = books[g].told_lo[i] = HUGE_VAL;
+            books[g].hi[i] = books[g].told_hi[i] = -HUGE_VAL;
+        }
     }
     for (size_t n = 0; n < reference_count(w->reference); n++) {
         rg_object id = reference_object(w->reference, n);
@@ -57,7 +62,43 @@ static void gather(const world *w, grid_books books[WORLD_GRIDS]) {
         reference_bounds(w->reference, id, lo, hi);
         bool finite = true;
         for (int i = 0; i < 3; i++) finite = finite && isfinite(lo[i]) && isfinite(hi[i]);
-        for (int i = 0; finite && i < 3; i++) b->lo[i] = fmin(b->lo[i], lo[i]), b->hi[i] = fmax(b->hi[i], hi[i]);
+        b->infinite += !finite;
+        for (int i = 0; finite && i < 3; i++) {
+            b->lo[i] = fmin(b->lo[i], lo[i]), b->hi[i] = fmax(b->hi[i], hi[i]);
+            b->told_lo[i] = fmin(b->told_lo[i], report.lo[i]), b->told_hi[i] = fmax(b->told_hi[i], report.hi[i]);
+        }
+    }
+}
+
+/* An object is in one place or in none, and what has a place anywhere has it in a cell. */
+static void check_loose(const world *w, int g, const grid_books *b, const rg_grid_report *report) {
+    if (report->entries + report->unbounded != report->objects) world_fail(w, "grid %d: entries and unbounded", g);
+    if (report->unbounded < b->infinite || (!w->no_cells_for_finite && report->unbounded > b->infinite)) {
+        world_fail(w, "grid %d: %llu unbounded, but %llu are infinite", g, (unsigned long long)report->unbounded,
+                   (unsigned long long)b->infinite);
+    }
+    if (report->rebuilds < w->rebuilds[g]) {
+        world_fail(w, "grid %d: rebuilt %llu times, asked for %llu", g, (unsigned long long)report->rebuilds,
+                   (unsigned long long)w->rebuilds[g]);
+    }
+    for (int i = 0; i < 3; i++) {
+        if (report->physical_lo[i] != 0 || report->physical_hi[i] != 0) world_fail(w, "grid %d: a physical box", g);
+    }
+    if (report->entries == 0 && report->levels != 0) world_fail(w, "grid %d: levels that hold nothing", g);
+}
+
+void world_check_rebuilt(const world *w, int g) {
+    rg_grid_report report = {.size = sizeof report};
+    grid_books books[WORLD_GRIDS];
+    double longest = 0;
+    world_expect(w, "rg_grid_stats", rg_grid_stats(w->scene, w->grids[g], &report), RG_OK);
+    if (report.kind != RG_GRID_LOOSE || report.unbounded + 1 >= report.objects || w->no_cells_for_finite) return;
+    gather(w, books);
+    for (int i = 0; i < 3; i++) longest = fmax(longest, books[g].told_hi[i] - books[g].told_lo[i]);
+    for (int i = 0; i < 3; i++) {
+        double spare = longest * 0x1p-16;
+        if (report.logical_lo[i] < books[g].told_lo[i] - spare || report.logical_hi[i] > books[g].told_hi[i] + spare)
+            world_fail(w, "grid %d: axis %d: rebuilt, but the logical box is not tight", g, i);
     }
 }
 
@@ -67,12 +108,13 @@ static void check_grid(const world *w, int g, const grid_books *b) {
     if (report.objects != b->objects) world_fail(w, "grid %d: number of objects", g);
     if (report.unbounded > report.objects) world_fail(w, "grid %d: more unbounded objects than objects", g);
     if (report.entries < report.objects - report.unbounded) world_fail(w, "grid %d: too few entries", g);
-    if (report.kind != RG_GRID_UNIFORM && report.kind != RG_GRID_HIERARCHICAL) world_fail(w, "grid %d: kind", g);
+    if (report.kind < RG_GRID_UNIFORM || report.kind > RG_GRID_LOOSE) world_fail(w, "grid %d: kind", g);
+    if (report.kind == RG_GRID_LOOSE) check_loose(w, g, b, &report);
     if (report.kind == RG_GRID_HIERARCHICAL && report.entries > 8 * report.objects) {
         world_fail(w, "grid %d: more than 8 places an object", g);
     }
     for (int i = 0; i < 3; i++) {
-        if (report.levels > 0 && !(report.physical_lo[i] < report.physical_hi[i])) {
+        if (report.kind != RG_GRID_LOOSE && report.levels > 0 && !(report.physical_lo[i] < report.physical_hi[i])) {
             world_fail(w, "grid %d: no physical box", g);
         }
         if (b->lo[i] > b->hi[i]) continue;

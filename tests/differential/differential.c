@@ -22,29 +22,46 @@
 typedef struct grid_case {
     const char *name;
     rg_grid_config grid;
-    bool two; /* a second grid, of the other kind */
-    uint32_t workers;
-    int most_decade; /* of the sizes: cells of a uniform grid that is never rebuilt list a large object very often */
+    int grids; /* how many besides the scene's own: see MORE */
+    bool two_workers;
+    bool one_decade_less; /* cells of a uniform grid that is never rebuilt list a large object very often */
+    bool configures, balls, all_finite;
+    int least_decade, most_decade; /* of the sizes; 0, as of what follows: the usual ones */
+    uint32_t population, most_at_once, many_of_16;
+    uint32_t steps_part; /* so much fewer steps */
 } grid_case;
 
 #define GRID(...)                                                                                                    \
     { .size = sizeof(rg_grid_config), __VA_ARGS__ }
 #define UNIFORM .kind = RG_GRID_UNIFORM
 #define HIERARCHICAL .kind = RG_GRID_HIERARCHICAL
+#define LOOSE .kind = RG_GRID_LOOSE
 #define NEVER .rebuild_factor = RG_REBUILD_NEVER
 
 static const grid_case CASES[] = {
-    {"uniform-auto", GRID(UNIFORM), false, 1, 1},
-    {"uniform-box", GRID(UNIFORM, SMALL_BOX, .rebuild_factor = 2), false, 1, 1},
-    {"uniform-never", GRID(UNIFORM, SMALL_BOX, NEVER, .resolution = 16), false, 1, 0},
-    {"uniform-one-cell", GRID(UNIFORM, SMALL_BOX, NEVER, .resolution = 1), false, 1, 1},
-    {"uniform-fine", GRID(UNIFORM, .resolution = 50), false, 1, 0},
-    {"hierarchical-auto", GRID(HIERARCHICAL), false, 1, 1},
-    {"hierarchical-box", GRID(HIERARCHICAL, SMALL_BOX, .rebuild_factor = 2), false, 1, 1},
-    {"hierarchical-never", GRID(HIERARCHICAL, SMALL_BOX, NEVER, .resolution = 64), false, 1, 1},
-    {"hierarchical-coarse", GRID(HIERARCHICAL, LONG_BOX, NEVER, .resolution = 5), false, 1, 1},
-    {"hierarchical-fine", GRID(HIERARCHICAL, .resolution = 200), false, 2, 1},
-    {"two-grids", GRID(HIERARCHICAL), true, 2, 1},
+    {"uniform-auto", .grid = GRID(UNIFORM)},
+    {"uniform-box", .grid = GRID(UNIFORM, SMALL_BOX, .rebuild_factor = 2)},
+    {"uniform-never", .grid = GRID(UNIFORM, SMALL_BOX, NEVER, .resolution = 16), .one_decade_less = true},
+    {"uniform-one-cell", .grid = GRID(UNIFORM, SMALL_BOX, NEVER, .resolution = 1)},
+    {"uniform-fine", .grid = GRID(UNIFORM, .resolution = 50), .one_decade_less = true},
+    {"hierarchical-auto", .grid = GRID(HIERARCHICAL)},
+    {"hierarchical-box", .grid = GRID(HIERARCHICAL, SMALL_BOX, .rebuild_factor = 2)},
+    {"hierarchical-never", .grid = GRID(HIERARCHICAL, SMALL_BOX, NEVER, .resolution = 64)},
+    {"hierarchical-coarse", .grid = GRID(HIERARCHICAL, LONG_BOX, NEVER, .resolution = 5)},
+    {"hierarchical-fine", .grid = GRID(HIERARCHICAL, .resolution = 200), .two_workers = true},
+    {"two-grids", .grid = GRID(HIERARCHICAL), .grids = 1, .two_workers = true},
+    {"loose", .grid = GRID(LOOSE)},
+    {"loose-balls", .grid = GRID(LOOSE), .balls = true},
+    {"loose-balls-crowd", .grid = GRID(LOOSE), .balls = true, .population = 3000, .most_at_once = 2000,
+     .many_of_16 = 4, .steps_part = 8},
+    {"loose-finite", .grid = GRID(LOOSE), .all_finite = true},
+    {"loose-few", .grid = GRID(LOOSE), .population = 6},
+    {"loose-decades", .grid = GRID(LOOSE), .least_decade = -8, .most_decade = 6, .steps_part = 3},
+    {"loose-churn", .grid = GRID(LOOSE), .two_workers = true, .many_of_16 = 6},
+    {"loose-crowd", .grid = GRID(LOOSE), .two_workers = true, .population = 3000, .most_at_once = 2000,
+     .many_of_16 = 4, .steps_part = 40},
+    {"grids-of-all-kinds", .grid = GRID(LOOSE), .grids = 3, .two_workers = true, .many_of_16 = 2},
+    {"grids-configured", .grid = GRID(LOOSE), .grids = 2, .many_of_16 = 1, .configures = true},
 };
 
 typedef struct options {
@@ -64,11 +81,12 @@ static void drift(world *w, uint64_t phase, double offset) {
     w->centre[side / 2] += (side % 2 ? -1 : 1) * random_decade(&w->random, 1, 3);
 }
 
-static void run_step(world *w, const options *o, uint64_t phase_length) {
+static void run_step(world *w, const options *o, uint32_t population, uint64_t phase_length) {
     if (w->step % phase_length == 0) drift(w, w->step / phase_length, o->offset);
-    world_step(w, o->population);
+    world_step(w, population);
     if (w->step % 4 == 0) world_query_plain(w, 1 + random_below(&w->random, 4));
     if (w->step % 32 == 0) world_query_views(w, 1 + random_below(&w->random, WORLD_BATCH));
+    if (w->step % 64 == 16) world_query_shadows(w, 1 + random_below(&w->random, WORLD_BATCH));
     if (w->step % 64 == 0) world_query_filtered(w, 1 + random_below(&w->random, WORLD_BATCH));
     if (w->step % 256 == 0) world_check_books(w);
 }
@@ -83,21 +101,32 @@ static void report(const world *w, clock_t begin) {
 }
 
 static void run_case(const grid_case *what, const options *o) {
-    static const rg_grid_config SECOND = GRID(UNIFORM, SMALL_BOX);
+    static const rg_grid_config MORE[] = {GRID(UNIFORM, SMALL_BOX), GRID(LOOSE), GRID(HIERARCHICAL)};
     static world w; /* large */
     rg_grid_config grid = what->grid;
     bool given = grid.lo[0] != 0;
     for (int i = 0; i < 3; i++) grid.lo[i] += given ? o->offset : 0, grid.hi[i] += given ? o->offset : 0;
-    rg_scene_config config = {.size = sizeof config, .workers = what->workers, .grid = &grid};
+    rg_scene_config config = {.size = sizeof config, .workers = what->two_workers ? 2 : 1, .grid = &grid};
     clock_t begin = clock();
     /* The same seed must not mean the same steps in each case. */
-    world_create(&w, what->name, o->seed + 1000 * (uint64_t)(what - CASES), &config, what->two ? &SECOND : NULL);
+    world_create(&w, what->name, o->seed + 1000 * (uint64_t)(what - CASES), &config, MORE, what->grids);
     w.seed = o->seed;
-    w.most_decade = what->most_decade;
-    uint64_t phase_length = o->steps / 36 + 1;
-    while (w.step < o->steps) run_step(&w, o, phase_length);
-    if (o->steps >= 10000 && w.counts.hits < w.counts.rays / 10) world_fail(&w, "hardly any ray hit: a poor test");
-    if (w.counts.within_bound > w.counts.rays / 50 + 10) world_fail(&w, "too many answers need the bound's mercy");
+    if (what->most_decade) w.most_decade = what->most_decade;
+    if (what->least_decade) w.least_decade = what->least_decade;
+    w.no_cells_for_finite = what->least_decade < -4;
+    w.most_decade -= what->one_decade_less;
+    if (what->most_at_once) w.most_at_once = what->most_at_once;
+    w.many_of_16 = what->many_of_16;
+    w.configures = what->configures;
+    w.balls = what->balls;
+    w.all_finite = what->all_finite;
+    uint64_t steps = what->steps_part ? o->steps / what->steps_part : o->steps;
+    uint32_t population = what->population ? what->population : o->population;
+    while (w.step < steps) run_step(&w, o, population, steps / 36 + 1);
+    if (steps >= 10000 && w.counts.hits < w.counts.rays / 10) world_fail(&w, "hardly any ray hit: a poor test");
+    /* Where sizes differ by many powers of ten, most rays start in something huge, or just touch it. */
+    uint64_t mercy = w.counts.rays / (what->least_decade ? 10 : 50) + 10;
+    if (w.counts.within_bound > mercy) world_fail(&w, "too many answers need the bound's mercy");
     report(&w, begin);
     world_destroy(&w);
 }

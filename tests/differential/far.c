@@ -15,7 +15,8 @@ static void run_at(double offset, rg_grid_kind kind, uint64_t seed) {
     static world w; /* large */
     const rg_grid_config grid = {.size = sizeof grid, .kind = kind};
     const rg_scene_config config = {.size = sizeof config, .workers = 1, .grid = &grid};
-    world_create(&w, kind == RG_GRID_UNIFORM ? "far, uniform" : "far, hierarchical", seed, &config, NULL);
+    static const char *const NAMES[] = {"far", "far, uniform", "far, hierarchical", "far, loose"};
+    world_create(&w, NAMES[kind], seed, &config, NULL, 0);
     w.spread = 40;
     /* Not the same on all axes: a grid must not find its walls by symmetry. */
     w.centre[0] = offset;
@@ -25,6 +26,7 @@ static void run_at(double offset, rg_grid_kind kind, uint64_t seed) {
         world_step(&w, POPULATION);
         if (w.step % 4 == 0) world_query_plain(&w, 4);
         if (w.step % 32 == 0) world_query_views(&w, WORLD_BATCH);
+        if (w.step % 64 == 16) world_query_shadows(&w, WORLD_BATCH);
         if (w.step % 256 == 0) world_check_books(&w);
     }
     const world_counts *c = &w.counts;
@@ -39,8 +41,7 @@ int main(int argc, char **argv) {
     uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 0) : 20002;
     printf("seed %" PRIu64 "\n", seed);
     for (size_t i = 0; i < sizeof OFFSETS / sizeof *OFFSETS; i++) {
-        run_at(OFFSETS[i], RG_GRID_UNIFORM, seed);
-        run_at(OFFSETS[i], RG_GRID_HIERARCHICAL, seed);
+        for (rg_grid_kind kind = RG_GRID_UNIFORM; kind <= RG_GRID_LOOSE; kind++) run_at(OFFSETS[i], kind, seed);
     }
     return EXIT_SUCCESS;
 }

@@ -83,20 +83,37 @@ static void check_offset(world *w, const rg_hit *hit) {
     }
 }
 
-void world_query_plain(world *w, uint32_t count) {
-    rg_ray rays[WORLD_BATCH] = {{{0}, {0}, 0, 0, 0, 0}};
-    rg_hit hits[WORLD_BATCH];
-    uint8_t occluded[WORLD_BATCH];
-    memset(hits, 0xA5, sizeof hits);
-    for (uint32_t i = 0; i < count; i++) rays[i] = world_ray(w);
+static void trace_and_judge(world *w, const rg_ray *rays, rg_hit *hits, uint8_t *occluded, uint32_t count) {
     world_expect(w, "rg_scene_trace", rg_scene_trace(w->scene, rays, hits, count), RG_OK);
     world_expect(w, "rg_scene_occluded", rg_scene_occluded(w->scene, rays, occluded, count), RG_OK);
     for (uint32_t i = 0; i < count; i++) {
         judge(w, &rays[i], RG_CULL_NONE, &hits[i]);
         judge_occluded(w, &rays[i], RG_CULL_NONE, &hits[i], occluded[i]);
         w->invalid_rays += reference_valid(&rays[i]) ? 0 : 2;
+    }
+}
+
+void world_query_plain(world *w, uint32_t count) {
+    rg_ray rays[WORLD_BATCH] = {{{0}, {0}, 0, 0, 0, 0}};
+    rg_hit hits[WORLD_BATCH];
+    uint8_t occluded[WORLD_BATCH];
+    memset(hits, 0xA5, sizeof hits);
+    world_rays(w, rays, count);
+    trace_and_judge(w, rays, hits, occluded, count);
+    for (uint32_t i = 0; i < count; i++) {
         if (hits[i].object != RG_NO_OBJECT && random_once_in(&w->random, 8)) check_offset(w, &hits[i]);
     }
+}
+
+void world_query_shadows(world *w, uint32_t count) {
+    const batch_space space = {{w->centre[0], w->centre[1], w->centre[2]}, w->spread};
+    rg_ray rays[WORLD_BATCH];
+    rg_hit hits[WORLD_BATCH], behind[WORLD_BATCH];
+    uint8_t occluded[WORLD_BATCH];
+    world_rays(w, rays, count);
+    trace_and_judge(w, rays, hits, occluded, count);
+    batch_shadows(&w->random, &space, hits, rays, count);
+    trace_and_judge(w, rays, behind, occluded, count);
 }
 
 /* ---------------------------------------------------------------------------------------------------- views */
@@ -150,8 +167,23 @@ static rg_hit_views same_types(hit_parts *parts) {
     views.v = (rg_output){&h->v, stride, RG_F32};
     views.position = rg_output3_packed(h->position, stride, RG_F64);
     views.offset = (rg_output){&h->offset, stride, RG_F32};
-    views.cells = (rg_output){parts->cells, sizeof(uint32_t), RG_U32};
-    views.tests = (rg_output){parts->tests, sizeof(uint32_t), RG_U32};
+    return views;
+}
+
+/* Counting may keep a library from taking the way that it takes otherwise. */
+static void count_too(rg_hit_views *views, hit_parts *parts) {
+    views->cells = (rg_output){parts->cells, sizeof(uint32_t), RG_U32};
+    views->tests = (rg_output){parts->tests, sizeof(uint32_t), RG_U32};
+}
+
+/* No more than tells what is hit, and where: what is not asked for may be found another way, or not at all. */
+static rg_hit_views little(rg_hit *hits, uint32_t count) {
+    const ptrdiff_t stride = sizeof *hits;
+    rg_hit_views views = {.size = sizeof views};
+    memset(hits, 0, count * sizeof *hits);
+    views.t = (rg_output){&hits->t, stride, RG_F64};
+    views.object = (rg_output){&hits->object, stride, RG_U64};
+    views.primitive = (rg_output){&hits->primitive, stride, RG_U32};
     return views;
 }
 
@@ -221,8 +253,8 @@ void world_query_filtered(world *w, uint32_t count) {
     filter_data data = {w, count};
     rg_trace_config config = {.size = sizeof config, .filter = only_even_slots, .filter_user = &data};
     config.cull = (rg_cull)random_below(&w->random, 3);
+    world_rays(w, rays, count);
     for (uint32_t i = 0; i < count; i++) {
-        rays[i] = world_ray(w);
         w->invalid_rays += reference_valid(&rays[i]) ? 0 : 2;
     }
     rg_ray_views views = split_rays(rays, count, &in);
@@ -248,33 +280,39 @@ void world_query_filtered(world *w, uint32_t count) {
 void world_query_views(world *w, uint32_t count) {
     static const rg_cull CULLS[] = {RG_CULL_NONE, RG_CULL_BACK, RG_CULL_FRONT};
     rg_ray rays[WORLD_BATCH] = {{{0}, {0}, 0, 0, 0, 0}};
-    rg_hit plain[WORLD_BATCH];
+    rg_hit plain[WORLD_BATCH], few[WORLD_BATCH];
     uint8_t occluded[WORLD_BATCH];
     ray_parts in;
     hit_parts out;
     uint64_t invalid = 0, expected_invalid = 0;
     rg_trace_config config = {.size = sizeof config, .invalid = &invalid};
     config.cull = CULLS[random_below(&w->random, 3)];
+    world_rays(w, rays, count);
     for (uint32_t i = 0; i < count; i++) {
-        rays[i] = world_ray(w);
         expected_invalid += !reference_valid(&rays[i]);
     }
     rg_ray_views views = split_rays(rays, count, &in);
-    rg_hit_views wanted = same_types(&out), others = other_types(&out);
+    rg_hit_views wanted = same_types(&out), others = other_types(&out), least = little(few, count);
+    if (random_once_in(&w->random, 2)) count_too(&wanted, &out);
     rg_output flags = {occluded, 1, RG_U8};
     rg_result result = rg_scene_trace_views(w->scene, &config, &views, &wanted, count);
     world_expect(w, "rg_scene_trace_views", result, RG_OK);
     if (invalid != expected_invalid) world_fail(w, "the number of invalid rays of a call is wrong");
     result = rg_scene_trace_views(w->scene, &config, &views, &others, count);
     world_expect(w, "rg_scene_trace_views", result, RG_OK);
+    result = rg_scene_trace_views(w->scene, &config, &views, &least, count);
+    world_expect(w, "rg_scene_trace_views", result, RG_OK);
     result = rg_scene_occluded_views(w->scene, &config, &views, &flags, count);
     world_expect(w, "rg_scene_occluded_views", result, RG_OK);
     world_expect(w, "rg_scene_trace", rg_scene_trace(w->scene, rays, plain, count), RG_OK);
-    w->invalid_rays += 4 * expected_invalid;
+    w->invalid_rays += 5 * expected_invalid;
     for (uint32_t i = 0; i < count; i++) {
         const rg_hit *h = &out.hits[i];
         judge(w, &rays[i], config.cull, h);
         judge_occluded(w, &rays[i], config.cull, h, occluded[i]);
+        bool same = few[i].object == h->object && few[i].primitive == h->primitive;
+        if (!same || (few[i].t != h->t && !(isnan(few[i].t) && isnan(h->t))))
+            fail_on(w, &rays[i], config.cull, &few[i], "another hit where less is asked for");
         if (!agree(h, &out, i)) fail_on(w, &rays[i], config.cull, h, "outputs of other types differ");
         /* `reserved` has no view: it stays 0 in both. */
         if (config.cull == RG_CULL_NONE && memcmp(h, &plain[i], sizeof *h) != 0) {

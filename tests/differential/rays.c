@@ -156,3 +156,20 @@ rg_ray world_ray(world *w) {
     if (random_once_in(&w->random, 100)) spoil(w, &ray);
     return ray;
 }
+
+void world_rays(world *w, rg_ray *rays, uint32_t count) {
+    batch_space space = {{w->centre[0], w->centre[1], w->centre[2]}, w->spread};
+    double size;
+    if (random_once_in(&w->random, 2)) {
+        for (uint32_t i = 0; i < count; i++) rays[i] = world_ray(w);
+        return;
+    }
+    /* Around some object, so that not all pass by. */
+    if (random_once_in(&w->random, 2)) {
+        pick_target(w, space.centre, &size);
+        space.spread = size * random_between(&w->random, 0.2, 2);
+    }
+    batch_rays(&w->random, &space, rays, count);
+    bool masked = random_once_in(&w->random, 4);
+    for (uint32_t i = 0; i < count && masked; i++) rays[i].mask = UINT32_C(1) << random_below(&w->random, 8);
+}

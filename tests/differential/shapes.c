@@ -6,13 +6,14 @@
 
 static void add(world *w, rg_result result, rg_shape *shape, const reference_shape *reference, bool finite) {
     world_expect(w, "making a shape", result, RG_OK);
-    w->shapes[w->shape_count++] = (world_shape){shape, reference, finite, !finite};
+    w->shapes[w->shape_count++] = (world_shape){shape, reference, finite, false, !finite};
 }
 
 static void add_sphere(world *w, double radius) {
     rg_shape *shape = NULL;
     rg_result result = rg_shape_create_sphere(NULL, radius, &shape);
     add(w, result, shape, reference_sphere(w->reference, radius), true);
+    w->shapes[w->shape_count - 1].ball = true;
 }
 
 static void add_box(world *w, double x0, double y0, double z0, double x1, double y1, double z1) {
@@ -174,6 +175,7 @@ rg_pose world_pose(world *w, const world_shape *shape) {
     }
     if (!shape->finite) return pose;
     if (random_once_in(&w->random, 4)) pose.scale = random_decade(&w->random, w->least_decade, w->most_decade);
+    if (w->balls) return pose;
     switch (random_below(&w->random, 6)) {
     case 0:
         scaled_rotation(w, &pose);

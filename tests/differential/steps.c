@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-enum { MOST_AT_ONCE = 32 };
-
 rg_object world_pick(world *w) {
     return reference_object(w->reference, random_below(&w->random, (uint32_t)reference_count(w->reference)));
 }
@@ -14,7 +12,8 @@ static const world_shape *pick_shape(world *w) {
     const world_shape *shape;
     do {
         shape = &w->shapes[random_below(&w->random, (uint32_t)w->shape_count)];
-    } while (shape->rare && !random_once_in(&w->random, 20));
+    } while ((shape->rare && !random_once_in(&w->random, 20)) || (w->balls && !shape->ball) ||
+             (w->all_finite && !shape->finite));
     return shape;
 }
 
@@ -30,7 +29,8 @@ static const world_shape *shape_of(world *w, rg_object id) {
 
 /* Few bits, so that rays with few bits pass through most of the scene. */
 static uint32_t pick_mask(world *w) {
-    return random_once_in(&w->random, 4) ? UINT32_MAX : UINT32_C(1) << random_below(&w->random, 8);
+    return w->balls || w->all_finite || random_once_in(&w->random, 4) ? UINT32_MAX
+                                                                      : UINT32_C(1) << random_below(&w->random, 8);
 }
 
 static void note_inserted(world *w, rg_object id, const world_shape *shape, const rg_pose *pose, uint32_t mask) {
@@ -77,11 +77,12 @@ static rg_pose_views views_of(const rg_pose *poses, uint32_t count, bool backwar
 }
 
 void world_insert_many(world *w, uint32_t count) {
-    rg_pose poses[MOST_AT_ONCE];
-    rg_shape *handles[MOST_AT_ONCE];
-    const world_shape *shapes[MOST_AT_ONCE];
-    uint32_t masks[MOST_AT_ONCE];
-    rg_object ids[MOST_AT_ONCE] = {0};
+    static rg_pose poses[WORLD_MANY];
+    static rg_shape *handles[WORLD_MANY];
+    static const world_shape *shapes[WORLD_MANY];
+    static uint32_t masks[WORLD_MANY];
+    static rg_object ids[WORLD_MANY];
+    memset(ids, 0, count * sizeof *ids);
     for (uint32_t i = 0; i < count; i++) {
         shapes[i] = pick_shape(w);
         handles[i] = shapes[i]->shape;
@@ -127,13 +128,15 @@ void world_move_one(world *w) {
 
 /* Draws ids with repetition, so now and then one is named twice and must end at its last pose. */
 void world_move_many(world *w, uint32_t count) {
-    rg_pose poses[MOST_AT_ONCE] = {{{0}, {0}, 1}};
-    rg_object ids[MOST_AT_ONCE];
+    static rg_pose poses[WORLD_MANY];
+    static rg_object ids[WORLD_MANY];
     bool backward = random_once_in(&w->random, 2), with_linear = random_once_in(&w->random, 2);
     bool with_scale = random_once_in(&w->random, 2);
     for (uint32_t i = 0; i < count; i++) {
         ids[i] = world_pick(w);
-        poses[backward ? count - 1 - i : i] = world_pose(w, shape_of(w, ids[i]));
+        rg_pose *pose = &poses[backward ? count - 1 - i : i];
+        *pose = world_pose(w, shape_of(w, ids[i]));
+        if (random_once_in(&w->random, 2)) next_position(w, ids[i], pose->position);
     }
     rg_pose_views views = views_of(poses, count, backward, with_linear, with_scale);
     rg_input in = {ids, sizeof *ids, RG_U64};
@@ -154,23 +157,49 @@ void world_remove_one(world *w) {
     note_removed(w, id);
 }
 
-/* Sometimes names one twice: then nothing may go. */
+/* Those that the reference has side by side, from some place on; sometimes one of them twice: then none may go. */
 void world_remove_many(world *w, uint32_t count) {
-    rg_object ids[MOST_AT_ONCE];
-    bool twice = false;
-    for (uint32_t i = 0; i < count; i++) {
-        ids[i] = world_pick(w);
-        for (uint32_t k = 0; k < i; k++) twice = twice || ids[k] == ids[i];
-    }
+    static rg_object ids[WORLD_MANY];
+    size_t all = reference_count(w->reference), first = random_below(&w->random, (uint32_t)all);
+    if (count > all) count = (uint32_t)all;
+    bool twice = count > 1 && random_once_in(&w->random, 4);
+    for (uint32_t i = 0; i < count; i++) ids[i] = reference_object(w->reference, (first + i) % all);
+    if (twice) ids[random_below(&w->random, count - 1)] = ids[count - 1];
     rg_input in = {ids, sizeof *ids, RG_U64};
     world_expect(w, "rg_scene_remove_many", rg_scene_remove_many(w->scene, &in, count),
                  twice ? RG_INVALID_ID : RG_OK);
     for (uint32_t i = 0; !twice && i < count; i++) note_removed(w, ids[i]);
 }
 
+static uint64_t rebuilds_of(const world *w, int g) {
+    rg_grid_report report = {.size = sizeof report};
+    world_expect(w, "rg_grid_stats", rg_grid_stats(w->scene, w->grids[g], &report), RG_OK);
+    return report.rebuilds;
+}
+
 static void rebuild_one(world *w) {
-    rg_grid grid = w->grids[random_below(&w->random, (uint32_t)w->grid_count)];
-    world_expect(w, "rg_grid_rebuild", rg_grid_rebuild(w->scene, grid), RG_OK);
+    int g = (int)random_below(&w->random, (uint32_t)w->grid_count);
+    uint64_t before = rebuilds_of(w, g);
+    world_expect(w, "rg_grid_rebuild", rg_grid_rebuild(w->scene, w->grids[g]), RG_OK);
+    w->rebuilds[g] = before + 1;
+    world_check_rebuilt(w, g);
+}
+
+void world_configure(world *w) {
+    static const uint32_t RESOLUTIONS[] = {0, 0, 1, 7, 32};
+    int g = (int)random_below(&w->random, (uint32_t)w->grid_count);
+    uint64_t before = rebuilds_of(w, g);
+    rg_grid_config config = {.size = sizeof config, .kind = (rg_grid_kind)random_below(&w->random, 4)};
+    config.resolution = RESOLUTIONS[random_below(&w->random, 5)];
+    if (random_once_in(&w->random, 3)) {
+        for (int i = 0; i < 3; i++) {
+            config.lo[i] = w->centre[i] - 8;
+            config.hi[i] = w->centre[i] + 8;
+        }
+    }
+    world_expect(w, "rg_grid_configure", rg_grid_configure(w->scene, w->grids[g], &config), RG_OK);
+    w->rebuilds[g] = before + 1;
+    world_check_rebuilt(w, g);
 }
 
 static void set_mask(world *w) {
@@ -200,10 +229,27 @@ static void misuse(world *w) {
     world_expect(w, "rg_scene_insert", rg_scene_insert(w->scene, w->shapes[0].shape, &pose, NULL), RG_INVALID_VALUE);
 }
 
+static void step_of_many(world *w, uint32_t population, uint32_t many) {
+    uint32_t count = (uint32_t)reference_count(w->reference), what = random_below(&w->random, 3);
+    if (count < population / 2) what = 0;
+    if (count > population + population / 2) what = 2;
+    if (what == 0)
+        world_insert_many(w, many);
+    else if (what == 1 && count > 0)
+        world_move_many(w, many);
+    else if (count > 0)
+        world_remove_many(w, many);
+}
+
 void world_step(world *w, uint32_t population) {
-    uint32_t count = (uint32_t)reference_count(w->reference), many = 1 + random_below(&w->random, MOST_AT_ONCE);
+    uint32_t count = (uint32_t)reference_count(w->reference), many = 1 + random_below(&w->random, w->most_at_once);
     uint32_t what = random_below(&w->random, 1000);
     w->step++;
+    if (random_below(&w->random, 16) < w->many_of_16) {
+        step_of_many(w, population, many);
+        return;
+    }
+    if (w->configures && random_once_in(&w->random, 64)) world_configure(w);
     if (count == 0 || count < population / 2) what %= 250;
     if (count > population + population / 2) what = 580 + what % 130;
     if (what < 240)

@@ -40,11 +40,11 @@ void world_dump_object(const world *w, const char *which, rg_object id) {
             shape.lo[0], shape.lo[1], shape.lo[2], shape.hi[0], shape.hi[1], shape.hi[2]);
     fprintf(stderr, "  at (%a, %a, %a), linear by rows", pose->position[0], pose->position[1], pose->position[2]);
     for (int i = 0; i < 9; i++) fprintf(stderr, " %a", pose->linear[i]);
-    fprintf(stderr, "\n");
+    fprintf(stderr, ", scale %a\n", pose->scale);
 }
 
 void world_create(world *w, const char *name, uint64_t seed, const rg_scene_config *config,
-                  const rg_grid_config *second) {
+                  const rg_grid_config *more, int more_count) {
     memset(w, 0, sizeof *w);
     w->name = name;
     w->seed = seed;
@@ -52,13 +52,12 @@ void world_create(world *w, const char *name, uint64_t seed, const rg_scene_conf
     w->spread = 100;
     w->least_decade = -3;
     w->most_decade = 1;
+    w->most_at_once = 32;
     world_expect(w, "rg_scene_create", rg_scene_create(config, &w->scene), RG_OK);
     w->reference = reference_create();
     w->grid_count = 1; /* grids[0] is RG_GRID_OF_SCENE */
-    if (second) {
-        world_expect(w, "rg_grid_create", rg_grid_create(w->scene, second, &w->grids[1]), RG_OK);
-        w->grid_count = 2;
-    }
+    for (int i = 0; i < more_count; i++)
+        world_expect(w, "rg_grid_create", rg_grid_create(w->scene, &more[i], &w->grids[w->grid_count++]), RG_OK);
     world_make_shapes(w);
 }
 

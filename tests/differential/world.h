@@ -6,18 +6,20 @@
 #ifndef RAYGRID_TESTS_WORLD_H
 #define RAYGRID_TESTS_WORLD_H
 
+#include "batches.h"
 #include "random.h"
 #include "reference.h"
 
 #include <stddef.h>
 
-enum { WORLD_SHAPES = 32, WORLD_GRIDS = 2, WORLD_STALE = 64, WORLD_BATCH = 24 };
+enum { WORLD_SHAPES = 32, WORLD_GRIDS = 4, WORLD_STALE = 64, WORLD_BATCH = 40, WORLD_MANY = 2000 };
 
 typedef struct world_shape {
     rg_shape *shape;
     const reference_shape *reference;
     bool finite; /* infinite boxes take plain poses only */
-    bool rare;   /* in the way of most rays: one in a scene will do */
+    bool ball;
+    bool rare; /* in the way of most rays: one in a scene will do */
 } world_shape;
 
 /** What a user-defined shape gets: the reference stands in for the host's code. */
@@ -44,18 +46,25 @@ typedef struct world {
     int shape_count, users_alive;
     rg_grid grids[WORLD_GRIDS];
     int grid_count;
-    uint32_t most_objects;         /* at one time, for rg_scene_report.slots */
-    double centre[3], spread;      /* where poses are drawn from */
-    int least_decade, most_decade; /* of the sizes, as powers of ten */
+    uint64_t rebuilds[WORLD_GRIDS]; /* that were asked for */
+    bool configures;                /* grids change their kind now and then */
+    bool balls;                     /* nothing but spheres, whole ones, which every ray sees */
+    bool all_finite;                /* no infinite boxes, and no masks */
+    uint32_t most_at_once;          /* objects of a call on many: up to WORLD_MANY */
+    uint32_t many_of_16;            /* of 16 steps so many are calls on many, not counting the usual ones */
+    bool no_cells_for_finite;       /* sizes differ so much that finite objects may be without a cell */
+    uint32_t most_objects;          /* at one time, for rg_scene_report.slots */
+    double centre[3], spread;       /* where poses are drawn from */
+    int least_decade, most_decade;  /* of the sizes, as powers of ten */
     rg_object stale[WORLD_STALE];
     uint32_t removed; /* all so far; the last WORLD_STALE of them are in `stale` */
     uint64_t invalid_rays;
     world_counts counts;
 } world;
 
-/** Makes both scenes empty, and the shapes. `second` is the config of a second grid or NULL. */
+/** Makes both scenes empty, and the shapes; and `more_count` grids besides the scene's own. */
 void world_create(world *w, const char *name, uint64_t seed, const rg_scene_config *config,
-                  const rg_grid_config *second);
+                  const rg_grid_config *more, int more_count);
 
 /** Removes everything, destroys both scenes, checks that every shape died. */
 void world_destroy(world *w);
@@ -81,19 +90,26 @@ void world_remove_one(world *w);
 void world_remove_many(world *w, uint32_t count);
 /** Any of these, the population held near `population`; also masks, rebuilds, and calls that must fail. */
 void world_step(world *w, uint32_t population);
+/** Gives a grid a random configuration of any kind. */
+void world_configure(world *w);
 /** Some live object. There must be one. */
 rg_object world_pick(world *w);
 
 /* rays.c */
 rg_ray world_ray(world *w);
+/** Lone rays, or neighbours: see batches.h. */
+void world_rays(world *w, rg_ray *rays, uint32_t count);
 
 /* queries.c: each puts `count` random rays to both */
 void world_query_plain(world *w, uint32_t count);
+void world_query_shadows(world *w, uint32_t count);  /* neighbours, and rays from what they hit to a light */
 void world_query_views(world *w, uint32_t count);    /* by views, with culling */
 void world_query_filtered(world *w, uint32_t count); /* with a filter, and culling */
 
 /* books.c: stats, lookups, bounds, stale ids */
 void world_check_books(world *w);
+/** What is only right just after a rebuild: boxes are tight. */
+void world_check_rebuilt(const world *w, int grid);
 
 void world_dump_ray(const rg_ray *ray);
 void world_dump_object(const world *w, const char *which, rg_object id);

@@ -26,13 +26,25 @@ typedef struct shared {
     rg_scene *scene;
     rg_shape *ball;
     rg_object runners[PAIRS][2];
+    rg_grid_kind kind; /* of its grid, at first */
     int rounds;
     pthread_mutex_t lock;
-    int movers_left, failures;
+    int movers_left, traces, failures;
 } shared;
 
 static double lane_y(int lane) {
     return 5.0 * lane;
+}
+
+/* Rays go lane by lane, or so many in each lane together: neighbours may be traced in another way. */
+enum { TOGETHER = 16 };
+
+static int lane_of(int ray, bool together) {
+    return (together ? ray / TOGETHER : ray) % LANES;
+}
+
+static int first_of(int lane, bool together) {
+    return together ? lane * TOGETHER : lane;
 }
 
 static void complain(shared *s, const char *what, double t) {
@@ -48,15 +60,35 @@ static bool more_to_come(shared *s) {
     return more;
 }
 
+static void count_trace(shared *s) {
+    pthread_mutex_lock(&s->lock);
+    s->traces++;
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* So many rounds at the least, and until there were as many traces beside them. */
+static bool goes_on(shared *s, int round) {
+    pthread_mutex_lock(&s->lock);
+    bool more = round < s->rounds || s->traces < s->rounds;
+    pthread_mutex_unlock(&s->lock);
+    return more;
+}
+
 static void mover_done(shared *s) {
     pthread_mutex_lock(&s->lock);
     s->movers_left--;
     pthread_mutex_unlock(&s->lock);
 }
 
+/* Another kind of grid each time. */
+static void configure(shared *s, int time) {
+    const rg_grid_config grid = {.size = sizeof grid, .kind = 1 + (s->kind + time) % 3};
+    if (rg_grid_configure(s->scene, RG_GRID_OF_SCENE, &grid) != RG_OK) complain(s, "configure", 0);
+}
+
 static void *move_runners(void *argument) {
     shared *s = argument;
-    for (int round = 0; round < s->rounds; round++) {
+    for (int round = 0; goes_on(s, round); round++) {
         for (int pair = 0; pair < PAIRS; pair++) {
             double position[2][3] = {{0}};
             for (int k = 0; k < 2; k++) {
@@ -68,6 +100,7 @@ static void *move_runners(void *argument) {
             poses.position = rg_input3_packed(position[0], sizeof position[0], RG_F64);
             if (rg_scene_move_many(s->scene, &ids, &poses, 2) != RG_OK) complain(s, "move_many", 0);
         }
+        if (round % 8 == 7) configure(s, round / 8);
         if (round % 16 == 0 && rg_grid_rebuild(s->scene, RG_GRID_OF_SCENE) != RG_OK) complain(s, "rebuild", 0);
     }
     mover_done(s);
@@ -77,7 +110,7 @@ static void *move_runners(void *argument) {
 static void *blink(void *argument) {
     shared *s = argument;
     rg_object ids[BLINKERS] = {0};
-    for (int round = 0; round < s->rounds; round++) {
+    for (int round = 0; goes_on(s, round); round++) {
         for (int i = 0; i < BLINKERS; i++) {
             rg_pose pose = rg_pose_at(round % 3 ? NEAR : FAR, lane_y(2 * PAIRS + i), 0);
             if (rg_scene_insert(s->scene, s->ball, &pose, &ids[i]) != RG_OK) complain(s, "insert", 0);
@@ -98,16 +131,17 @@ static bool at(double t, double x) {
     return fabs(t - (x - 1 - FROM)) <= 0x1p-39;
 }
 
-static void judge(shared *s, const rg_hit *hits) {
+static void judge(shared *s, const rg_hit *hits, bool together) {
     for (int i = 0; i < RAYS; i++) {
-        int lane = i % LANES;
+        int lane = lane_of(i, together), first = first_of(lane, together);
         const rg_hit *h = &hits[i];
         bool runner = lane < 2 * PAIRS, near = at(h->t, NEAR), far = at(h->t, FAR);
         if (!runner && h->object == RG_NO_OBJECT) continue;
         if (!near && !far) complain(s, "an object where none ever was, or none where one must be", h->t);
         if (runner && h->object != s->runners[lane / 2][lane % 2]) complain(s, "another object", h->t);
-        if (runner && i >= LANES && h->t != hits[lane].t) complain(s, "one call saw two states of a runner", h->t);
-        if (runner && lane % 2 == 1 && h->t != hits[lane - 1].t) complain(s, "a pair was seen half moved", h->t);
+        if (runner && h->t != hits[first].t) complain(s, "one call saw two states of a runner", h->t);
+        if (runner && lane % 2 == 1 && h->t != hits[first_of(lane - 1, together)].t)
+            complain(s, "a pair was seen half moved", h->t);
     }
 }
 
@@ -117,16 +151,17 @@ static void *trace(void *argument) {
     rg_hit *hits = calloc(RAYS, sizeof *hits);
     uint8_t *occluded = calloc(RAYS, 1);
     if (!rays || !hits || !occluded) exit(EXIT_FAILURE);
-    for (int i = 0; i < RAYS; i++) {
-        const double origin[3] = {FROM, lane_y(i % LANES), 0}, direction[3] = {1, 0, 0};
-        rays[i] = rg_ray_from(origin, direction);
-    }
-    while (more_to_come(s)) {
+    for (bool together = false; more_to_come(s); together = !together) {
+        for (int i = 0; i < RAYS; i++) {
+            const double origin[3] = {FROM, lane_y(lane_of(i, together)), 0}, direction[3] = {1, 0, 0};
+            rays[i] = rg_ray_from(origin, direction);
+        }
         if (rg_scene_trace(s->scene, rays, hits, RAYS) != RG_OK) complain(s, "trace", 0);
-        judge(s, hits);
+        judge(s, hits, together);
+        count_trace(s);
         if (rg_scene_occluded(s->scene, rays, occluded, RAYS) != RG_OK) complain(s, "occluded", 0);
         for (int i = 0; i < RAYS; i++) {
-            if (i % LANES < 2 * PAIRS && occluded[i] != 1) complain(s, "occluded missed a runner", 0);
+            if (lane_of(i, together) < 2 * PAIRS && occluded[i] != 1) complain(s, "occluded missed a runner", 0);
         }
         rg_scene_report report = {.size = sizeof report};
         if (rg_scene_stats(s->scene, &report) != RG_OK) complain(s, "stats", 0);
@@ -151,6 +186,8 @@ static void run(shared *s, rg_grid_kind kind, uint32_t workers) {
         rg_pose pose = rg_pose_at(NEAR, lane_y(lane), 0);
         if (rg_scene_insert(s->scene, s->ball, &pose, &s->runners[lane / 2][lane % 2]) != RG_OK) exit(EXIT_FAILURE);
     }
+    s->kind = kind;
+    s->traces = 0;
     s->movers_left = 2;
     for (int i = 0; i < TRACERS; i++) start(&tracers[i], trace, s);
     start(&movers[0], move_runners, s);
@@ -158,6 +195,7 @@ static void run(shared *s, rg_grid_kind kind, uint32_t workers) {
     for (int i = 0; i < 2; i++) pthread_join(movers[i], NULL);
     for (int i = 0; i < TRACERS; i++) pthread_join(tracers[i], NULL);
     if (rg_scene_destroy(&s->scene) != RG_OK) complain(s, "destroy", 0);
+    printf("kind %d: %d traces\n", (int)kind, s->traces);
 }
 
 int main(int argc, char **argv) {
@@ -165,7 +203,8 @@ int main(int argc, char **argv) {
     if (rg_shape_create_sphere(NULL, 1, &s.ball) != RG_OK) return EXIT_FAILURE;
     run(&s, RG_GRID_UNIFORM, 2);
     run(&s, RG_GRID_HIERARCHICAL, 2);
-    run(&s, RG_GRID_HIERARCHICAL, 1);
+    run(&s, RG_GRID_LOOSE, 2);
+    run(&s, RG_GRID_LOOSE, 1);
     rg_shape_release(&s.ball);
     printf("%d failures\n", s.failures);
     return s.failures ? EXIT_FAILURE : EXIT_SUCCESS;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * memory: every allocation of a long scenario fails once, and once it fails with all that follow. Whatever call meets
+ * memory: every allocation of a long scenario fails once, and once it fails with all that follow; for each kind of
+ * grid as the scene's own. Whatever call meets
  * the failure returns RG_OUT_OF_MEMORY and has changed nothing, or succeeds as if nothing were amiss (where the
  * memory would only have made it faster). Afterwards all goes on as if it had never failed, and in the end all memory
  * is back.
@@ -21,9 +22,11 @@ typedef struct scenario {
     test_allocator memory;
     rg_scene *scene;
     rg_shape *shapes[SHAPES];
+    rg_grid_kind kind, other; /* of the scene's own grid, and of the second at first */
     rg_grid grid, spare;
     rg_object objects[OBJECTS];
     uint32_t count; /* of objects */
+    uint64_t turns; /* so far: what a step does follows from it alone */
     int own_destroyed;
 } scenario;
 
@@ -39,6 +42,7 @@ typedef struct step {
     const char *name;
     step_function *run;
     uint32_t argument, repeat;
+    bool needs_none; /* does without memory if there is none */
 } step;
 
 static void fail(const char *step_name, uint32_t turn, const char *why) {
@@ -65,7 +69,8 @@ static void own_destroy(void *user) {
 }
 
 static rg_result make_scene(scenario *s, uint32_t workers) {
-    rg_scene_config config = {.size = sizeof config, .workers = workers};
+    const rg_grid_config grid = {.size = sizeof grid, .kind = s->kind};
+    rg_scene_config config = {.size = sizeof config, .workers = workers, .grid = &grid};
     config.allocator = test_allocator_hooks(&s->memory);
     return rg_scene_create(&config, &s->scene);
 }
@@ -168,6 +173,42 @@ static rg_result move_many(scenario *s, uint32_t scale) {
     return rg_scene_move_many(s->scene, &ids, &views, MANY);
 }
 
+/* A sphere becomes something that is linear, or one again: it is stored otherwise then. */
+static rg_result turn_one(scenario *s, uint32_t unused) {
+    uint32_t number = (uint32_t)(s->turns * 5 % s->count);
+    rg_object_report report = {.size = sizeof report};
+    (void)unused;
+    if (rg_scene_lookup(s->scene, s->objects[number], &report) != RG_OK) return RG_INVALID_ID;
+    rg_pose pose = rg_pose_at(report.pose.position[0], report.pose.position[1], report.pose.position[2] + 1);
+    if (s->turns % 2) pose.linear[0] = 3;
+    return rg_scene_move(s->scene, s->objects[number], &pose);
+}
+
+/* A step so small that it mostly leads nowhere else. */
+static rg_result step_one(scenario *s, uint32_t unused) {
+    uint32_t number = (uint32_t)(s->turns * 7 % s->count);
+    rg_object_report report = {.size = sizeof report};
+    (void)unused;
+    if (rg_scene_lookup(s->scene, s->objects[number], &report) != RG_OK) return RG_INVALID_ID;
+    report.pose.position[s->turns % 3] += 0.1;
+    return rg_scene_move_to(s->scene, s->objects[number], report.pose.position);
+}
+
+/* More and more come to one place. */
+static rg_result crowd_one(scenario *s, uint32_t unused) {
+    uint32_t number = (uint32_t)(s->turns * 3 % s->count);
+    const double place[3] = {3 + 0.01 * (number % 10), 3, 3 + 0.01 * (number % 7)};
+    (void)unused;
+    return rg_scene_move_to(s->scene, s->objects[number], place);
+}
+
+/* So far away that no float has it. */
+static rg_result move_out(scenario *s, uint32_t unused) {
+    const double place[3] = {1e90, -1e80, 1e70 * (double)(s->turns + 1)};
+    (void)unused;
+    return rg_scene_move_to(s->scene, s->objects[s->turns * 11 % s->count], place);
+}
+
 static rg_result set_mask(scenario *s, uint32_t mask) {
     return rg_scene_set_mask(s->scene, s->objects[3], mask);
 }
@@ -186,9 +227,14 @@ static rg_result remove_many(scenario *s, uint32_t count) {
     return result;
 }
 
-static rg_result make_grid(scenario *s, uint32_t kind) {
-    rg_grid_config config = {.size = sizeof config, .kind = (rg_grid_kind)kind, .resolution = 8};
-    return rg_grid_create(s->scene, &config, kind == RG_GRID_UNIFORM ? &s->grid : &s->spare);
+static rg_result remove_all(scenario *s, uint32_t unused) {
+    (void)unused;
+    return remove_many(s, s->count);
+}
+
+static rg_result make_grid(scenario *s, uint32_t spare) {
+    rg_grid_config config = {.size = sizeof config, .kind = s->other, .resolution = 8};
+    return rg_grid_create(s->scene, &config, spare ? &s->spare : &s->grid);
 }
 
 static rg_result destroy_spare_grid(scenario *s, uint32_t unused) {
@@ -196,10 +242,13 @@ static rg_result destroy_spare_grid(scenario *s, uint32_t unused) {
     return rg_grid_destroy(s->scene, s->spare);
 }
 
-static rg_result configure(scenario *s, uint32_t kind) {
-    rg_grid_config config = {.size = sizeof config, .kind = (rg_grid_kind)kind, .lo = {-9, -9, -9}, .hi = {9, 9, 9}};
-    config.resolution = 16;
-    return rg_grid_configure(s->scene, kind == RG_GRID_UNIFORM ? RG_GRID_OF_SCENE : s->grid, &config);
+enum { SECOND = 16 };
+
+/* The kind, of the second grid with SECOND. */
+static rg_result configure(scenario *s, uint32_t which) {
+    rg_grid_config config = {.size = sizeof config, .lo = {-9, -9, -9}, .hi = {9, 9, 9}, .resolution = 16};
+    config.kind = (rg_grid_kind)(which % SECOND);
+    return rg_grid_configure(s->scene, which >= SECOND ? s->grid : RG_GRID_OF_SCENE, &config);
 }
 
 static rg_result rebuild(scenario *s, uint32_t second) {
@@ -207,32 +256,43 @@ static rg_result rebuild(scenario *s, uint32_t second) {
 }
 
 static const step STEPS[] = {
-    {"create", make_scene, 1, 1},
-    {"shape", make_shape, BALL, 1},
-    {"shape", make_shape, CUBE, 1},
-    {"shape", make_shape, PILL, 1},
-    {"mesh", make_shape, SOLID, 1},
-    {"user shape", make_shape, OWN, 1},
-    {"insert", insert_one, 5, 40},
-    {"grid", make_grid, RG_GRID_UNIFORM, 1},
-    {"grid", make_grid, RG_GRID_HIERARCHICAL, 1},
-    {"insert many", insert_many, 0, 1},
-    {"insert many into the second grid", insert_many, 1, 1},
-    {"move", move_one, 30, 10},
-    {"move_to", move_to, 1000, 10},
-    {"set_mask", set_mask, 5, 1},
-    {"move many", move_many, 500, 1},
-    {"rebuild", rebuild, 0, 1},
-    {"rebuild of the second", rebuild, 1, 1},
-    {"configure", configure, RG_GRID_UNIFORM, 1},
-    {"configure the second", configure, RG_GRID_HIERARCHICAL, 1},
-    {"insert far away", insert_one, 100000, 10},
-    {"move many", move_many, 50, 1},
-    {"remove", remove_one, 0, 20},
-    {"remove many", remove_many, MANY, 1},
-    {"insert after removes", insert_one, 10, 60},
-    {"configure", configure, RG_GRID_HIERARCHICAL, 1},
-    {"destroy a grid", destroy_spare_grid, 0, 1},
+    {"create", make_scene, 1, 1, false},
+    {"shape", make_shape, BALL, 1, false},
+    {"shape", make_shape, CUBE, 1, false},
+    {"shape", make_shape, PILL, 1, false},
+    {"mesh", make_shape, SOLID, 1, false},
+    {"user shape", make_shape, OWN, 1, false},
+    {"insert", insert_one, 5, 40, false},
+    {"grid", make_grid, 0, 1, false},
+    {"grid", make_grid, 1, 1, false},
+    {"insert many", insert_many, 0, 1, false},
+    {"insert many into the second grid", insert_many, 1, 1, false},
+    {"move", move_one, 30, 10, false},
+    {"move_to", move_to, 1000, 10, false},
+    {"set_mask", set_mask, 5, 1, false},
+    {"move many", move_many, 500, 1, false},
+    {"rebuild", rebuild, 0, 1, false},
+    {"rebuild of the second", rebuild, 1, 1, false},
+    {"configure", configure, RG_GRID_UNIFORM, 1, false},
+    {"configure the second", configure, SECOND + RG_GRID_HIERARCHICAL, 1, false},
+    {"configure the second", configure, SECOND + RG_GRID_LOOSE, 1, false},
+    {"configure", configure, RG_GRID_LOOSE, 1, false},
+    {"turn", turn_one, 0, 20, false},
+    {"step", step_one, 0, 20, true},
+    {"crowd", crowd_one, 0, 60, true},
+    {"out of all cells", move_out, 0, 12, false},
+    {"and back", move_to, 20, 12, false},
+    {"insert far away", insert_one, 100000, 10, false},
+    {"move many", move_many, 50, 1, false},
+    {"remove", remove_one, 0, 20, false},
+    {"remove many", remove_many, MANY, 1, false},
+    {"insert after removes", insert_one, 10, 60, false},
+    {"configure", configure, RG_GRID_HIERARCHICAL, 1, false},
+    {"remove all", remove_all, 0, 1, false},
+    {"insert many into the empty second grid", insert_many, 1, 1, false},
+    {"configure", configure, RG_GRID_LOOSE, 1, false},
+    {"insert many into the empty grid", insert_many, 0, 1, false},
+    {"destroy a grid", destroy_spare_grid, 0, 1, false},
 };
 
 /* -------------------------------------------------------------------------------------------- the harness */
@@ -251,6 +311,8 @@ static void look(scenario *s, probe *p) {
     }
     if (rg_scene_trace(s->scene, rays, p->hits, PROBES) != RG_OK) fail("trace", 0, rg_error_message());
     if (rg_scene_stats(s->scene, &report) != RG_OK) fail("stats", 0, rg_error_message());
+    /* A call that failed may have used a slot meanwhile: then its next object has another id there. */
+    for (int i = 0; i < PROBES; i++) p->hits[i].object = RG_OBJECT_SLOT(p->hits[i].object);
     p->objects = report.objects;
     p->slots = report.slots;
     p->grids = report.grids;
@@ -264,6 +326,11 @@ static void finish(scenario *s) {
     if (s->own_destroyed != own) fail("release", 0, "the user shape's destroy was not called once");
     if (s->memory.live_blocks != 0 || s->memory.live_bytes != 0) fail("destroy", 0, "memory is left");
 }
+
+/** Of the scene's own grid and of the second. */
+typedef struct kinds {
+    rg_grid_kind own, second;
+} kinds;
 
 static probe *baseline; /* what is seen after each turn if nothing fails */
 
@@ -289,6 +356,7 @@ static void run_turn(scenario *s, const step *what, uint32_t turn, const probe *
     rg_result result = what->run(s, what->argument);
     if (result != RG_OK) {
         if (result != RG_OUT_OF_MEMORY) fail(what->name, turn, rg_result_name(result));
+        if (what->needs_none) fail(what->name, turn, "out of memory, but none is needed");
         if (s->memory.failed == failed) fail(what->name, turn, "out of memory, but no allocation failed");
         if (rg_error_message()[0] == 0) fail(what->name, turn, "no message");
         look(s, &seen);
@@ -299,12 +367,15 @@ static void run_turn(scenario *s, const step *what, uint32_t turn, const probe *
     }
     look(s, &seen);
     demand_same(&seen, after, what, turn, "the scene is not as without a failure");
+    s->turns++;
 }
 
 /* Returns the number of allocations. */
-static uint64_t run(uint64_t fail_at, bool ever_after) {
+static uint64_t run(const kinds *k, uint64_t fail_at, bool ever_after) {
     static scenario s;
     memset(&s, 0, sizeof s);
+    s.kind = k->own;
+    s.other = k->second;
     s.memory.fail_at = fail_at;
     s.memory.fail_ever_after = ever_after;
     size_t turns = 0;
@@ -317,9 +388,12 @@ static uint64_t run(uint64_t fail_at, bool ever_after) {
     return s.memory.calls;
 }
 
-static uint64_t make_baseline(void) {
+static uint64_t make_baseline(const kinds *k) {
     static scenario s;
     size_t turns = 0, made = 0;
+    memset(&s, 0, sizeof s);
+    s.kind = k->own;
+    s.other = k->second;
     for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) turns += STEPS[i].repeat;
     baseline = calloc(turns + 1, sizeof *baseline);
     if (!baseline) fail("the test", 0, "out of memory");
@@ -328,6 +402,7 @@ static uint64_t make_baseline(void) {
             rg_result result = STEPS[i].run(&s, STEPS[i].argument);
             if (result != RG_OK) fail(STEPS[i].name, turn, rg_error_message());
             look(&s, &baseline[++made]);
+            s.turns++;
         }
     }
     finish(&s);
@@ -335,13 +410,19 @@ static uint64_t make_baseline(void) {
 }
 
 int main(void) {
-    uint64_t calls = make_baseline();
-    printf("%" PRIu64 " allocations, each fails once and once with all after it\n", calls);
-    if (run(0, false) != calls) fail("the test", 0, "the same steps make another number of allocations");
-    for (uint64_t n = 1; n <= calls; n++) {
-        run(n, false);
-        run(n, true);
+    static const kinds KINDS[] = {
+        {RG_GRID_LOOSE, RG_GRID_UNIFORM}, {RG_GRID_HIERARCHICAL, RG_GRID_LOOSE}, {RG_GRID_LOOSE, RG_GRID_LOOSE}};
+    for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
+        const kinds *k = &KINDS[i];
+        uint64_t calls = make_baseline(k);
+        printf("kinds %d and %d: %" PRIu64 " allocations, each fails once and once with all after it\n", (int)k->own,
+               (int)k->second, calls);
+        if (run(k, 0, false) != calls) fail("the test", 0, "the same steps make another number of allocations");
+        for (uint64_t n = 1; n <= calls; n++) {
+            run(k, n, false);
+            run(k, n, true);
+        }
+        free(baseline);
     }
-    free(baseline);
     return EXIT_SUCCESS;
 }

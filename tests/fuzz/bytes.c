@@ -68,7 +68,8 @@ rg_grid_config read_grid_config(script *s) {
     static const uint32_t RESOLUTIONS[] = {0, 0, 0, 1, 2, 5, 16, 40, 64, (1u << 20) + 1, UINT32_MAX};
     rg_grid_config config = {0};
     config.size = read_size(s, sizeof config);
-    config.kind = (rg_grid_kind)read_below(s, 16) % 4;
+    uint32_t number = read_below(s, 16);
+    config.kind = (rg_grid_kind)(number < 15 ? number % 4 : number); /* 15 is none */
     config.resolution = RESOLUTIONS[read_below(s, sizeof RESOLUTIONS / sizeof *RESOLUTIONS)];
     uint8_t kind = read_byte(s);
     for (int i = 0; kind & 1 && i < 3; i++) {

@@ -35,7 +35,7 @@ static void print_object(const script *s, const char *which, rg_object id) {
     fprintf(stderr, "at (%a, %a, %a), linear", object.pose.position[0], object.pose.position[1],
             object.pose.position[2]);
     for (int i = 0; i < 9; i++) fprintf(stderr, " %a", object.pose.linear[i]);
-    fprintf(stderr, "\n");
+    fprintf(stderr, ", scale %a\n", object.pose.scale);
 }
 
 static void fail_on(const script *s, const rg_ray *ray, rg_cull cull, const rg_hit *hit, const char *why) {

@@ -66,7 +66,8 @@ static real curvature(const object *o) {
 
 /* Normals are floats; and where the surface is curved they turn along with the point's own error. */
 static real normal_bound(const object *o, const rg_ray *ray, real cosine) {
-    return 0x1p-21L + 2 * curvature(o) * surface_bound(o, ray) / fabsl(cosine);
+    real curved = curvature(o), distance = curved > 0 ? 0x1p-50L * distance_to(o, ray) : 0;
+    return 0x1p-21L + 2 * curved * (distance + surface_bound(o, ray) / fabsl(cosine));
 }
 
 static judge judge_of(const object *o, const rg_ray *ray, rg_cull cull) {

@@ -227,7 +227,7 @@ START_TEST(configurations) {
         given.field = (value);                                                                                       \
         ck_assert_int_eq(rgi_grid_config_read(&config, &given), code);                                               \
     } while (0)
-    REFUSED(kind, 3, RG_INVALID_ARGUMENT);
+    REFUSED(kind, 4, RG_INVALID_ARGUMENT);
     REFUSED(kind, -1, RG_INVALID_ARGUMENT);
     REFUSED(resolution, (1u << 20) + 1, RG_INVALID_VALUE);
     REFUSED(rebuild_factor, 0.5, RG_INVALID_VALUE);
