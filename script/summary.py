@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Adds up the tests of several Meson builds: summary.py ROOT NAME..., for the builds ROOT/build-NAME.
+"""Adds up the tests of several builds: summary.py ROOT NAME..., for the builds ROOT/build-NAME.
 
-Reads the logs that `meson test` left. A build without a log did not build or did not run and counts as one failure.
+Reads the logs that `meson test` left there, or the tests.xml of pytest. A build without a log did not build or did not
+run and counts as one failure.
 The last line is 'N passed, N failed'; the exit code is 1 if any test failed or none ran.
 """
 
 import json
 import pathlib
 import sys
+import xml.etree.ElementTree
 
 PASSED = {"OK", "EXPECTEDFAIL"}
 SKIPPED = {"SKIP", "IGNORED"}
@@ -22,15 +24,30 @@ def read_log(path):
     return tests
 
 
+def read_junit(path):
+    """The same of a tests.xml in JUnit's format."""
+    tests = []
+    for case in xml.etree.ElementTree.parse(path).iter("testcase"):
+        bad = case.find("failure") is not None or case.find("error") is not None
+        result = "FAIL" if bad else "SKIP" if case.find("skipped") is not None else "OK"
+        tests.append((case.get("name"), result, float(case.get("time", 0))))
+    return tests
+
+
+def read_build(build):
+    """The tests of a build, by whichever log it has."""
+    for name, reader in (("meson-logs/testlog.json", read_log), ("tests.xml", read_junit)):
+        if (build / name).exists():
+            return reader(build / name)
+    return []
+
+
 def main(root, names):
     passed = failed = 0
     failures = []
     print(f"{'build':<8}{'passed':>8}{'failed':>8}{'skipped':>9}{'seconds':>9}")
     for name in names:
-        log = pathlib.Path(root, f"build-{name}", "meson-logs", "testlog.json")
-        tests = read_log(log) if log.exists() else []
-        if not tests:
-            tests = [("no test ran", "ERROR", 0.0)]
+        tests = read_build(pathlib.Path(root, f"build-{name}")) or [("no test ran", "ERROR", 0.0)]
         good = sum(result in PASSED for _, result, _ in tests)
         skipped = sum(result in SKIPPED for _, result, _ in tests)
         bad = [(test, result) for test, result, _ in tests if result not in PASSED | SKIPPED]
