@@ -61,4 +61,4 @@ ruff=(ruff --config "$here/pyproject.toml")
 say "docstrings, the README, tests, conformance, examples"
 "$python" -m pytest -q -p no:cacheprovider -c "$here/pyproject.toml" --doctest-modules --pyargs raygrid
 "$python" -m pytest -q -p no:cacheprovider -c "$here/pyproject.toml" --junitxml "$directory/tests.xml" \
-    "$@" . "$here/README.md"
+    "$@" . "$here/README.md" "$here/../../README.md"
