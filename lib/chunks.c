@@ -9,11 +9,11 @@ void rgi_chunks_init(rgi_chunks *chunks, rgi_memory *memory, uint32_t bytes) {
     chunks->bytes = bytes;
 }
 
-/* Huge pages of the slab that begins with chunk `first`: none as long as one would not be filled; then about a
- * quarter of what there is already. */
+/* Huge pages of the slab that begins with chunk `first`: an eighth of what there is already, so that little of them is
+ * empty; none as long as that is not a whole one. */
 static uint32_t slab_pages(const rgi_chunks *chunks, uint32_t first) {
     uint64_t filled = (uint64_t)first * chunks->bytes / RGI_HUGE_PAGE;
-    return filled < 4 ? filled > 0 : filled < 64 ? (uint32_t)(filled / 4) : 16;
+    return filled < 128 ? (uint32_t)(filled / 8) : 16;
 }
 
 static size_t slab_bytes(const rgi_chunks *chunks, uint32_t first) {
