@@ -248,8 +248,8 @@ static uint32_t bundle_through(group *g) {
     const rgi_kernels *kernels = c->scene->kernels;
     rgi_packet packet;
     kernels->to_frame(&g->bundle, g->lattice, &g->middle, &packet);
-    bool counted = c->hits.cells.data || c->hits.tests.data;
-    if (!counted && kernels->bound(&packet, g->lattice, &g->middle)) {
+    bool alone = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW;
+    if (!alone && kernels->bound(&packet, g->lattice, &g->middle)) {
         packet.any = c->any;
         packet.ask_all = asks_all(c);
         for (uint32_t i = 0; i < g->count; i++) packet.ask_all |= g->bundle.mask[i] == 0;
@@ -280,6 +280,8 @@ void rgi_through(rgi_call *c, uint64_t first, uint64_t last) {
     g.call = c;
     g.lattice = last - first < MIN_PACKET ? NULL : only_lattice(c->scene);
     if (g.lattice) g.middle = rgi_lattice_middle(g.lattice);
+    /* Then rays may spread as they like to count as going the same way. */
+    if (c->config.coherence == RG_COHERENCE_HIGH) g.middle.spacing = INFINITY;
     for (uint32_t i = 0; i < RGI_PACKET && i < last - first; i++) rgi_query_init(&g.queries[i], c);
     for (g.first = first; g.first < last; g.first += g.count) {
         uint32_t written = 0;

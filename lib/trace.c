@@ -81,8 +81,8 @@ static rg_result read_rays(rgi_call *c, const rg_trace_config *config, const rg_
     const rg_ray_views *v = &c->rays;
     if (c->config.cull < RG_CULL_NONE || c->config.cull > RG_CULL_FRONT)
         return rgi_fail(RG_INVALID_ARGUMENT, "cull is %d, which is no way to cull", (int)c->config.cull);
-    if (c->config.reserved)
-        return rgi_fail(RG_INVALID_ARGUMENT, "rg_trace_config.reserved is %u, not 0", c->config.reserved);
+    if (c->config.coherence < RG_COHERENCE_UNKNOWN || c->config.coherence > RG_COHERENCE_HIGH)
+        return rgi_fail(RG_INVALID_ARGUMENT, "coherence is %d, which is none", (int)c->config.coherence);
     bool required = count > 0;
     result = rgi_check_view3(v->origin.x, v->origin.y, v->origin.z, v->origin.type, RGI_FLOATS, required, "origin");
     if (!result)

@@ -115,12 +115,21 @@ enum {
  */
 typedef int32_t (*rg_filter)(void *user, uint64_t index, const rg_hit *candidate);
 
+/** Whether rays that follow one another in a call go nearly the same way. No answer depends on it, only time. */
+typedef int32_t rg_coherence;
+
+enum {
+    RG_COHERENCE_UNKNOWN = 0, /* looked at, 16 rays at a time */
+    RG_COHERENCE_LOW = 1,     /* they do not, as rays of random directions: they are not looked at */
+    RG_COHERENCE_HIGH = 2     /* they do, as rays from a camera or to a light, in small tiles: even if they spread */
+};
+
 /** How to trace. NULL in place of it means all defaults. */
 typedef struct rg_trace_config {
     size_t size;
     rg_cull cull;
-    uint32_t reserved; /* 0 */
-    rg_filter filter;  /* NULL: all candidates count */
+    rg_coherence coherence;
+    rg_filter filter; /* NULL: all candidates count */
     void *filter_user;
     uint64_t *invalid; /* receives the number of invalid rays of this call; NULL: not wanted */
 } rg_trace_config;

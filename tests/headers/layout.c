@@ -209,7 +209,7 @@ FIELD(rg_hit_views, tests, 256);
 SIZE(rg_trace_config, 40);
 FIELD(rg_trace_config, size, 0);
 FIELD(rg_trace_config, cull, 8);
-FIELD(rg_trace_config, reserved, 12);
+FIELD(rg_trace_config, coherence, 12);
 FIELD(rg_trace_config, filter, 16);
 FIELD(rg_trace_config, filter_user, 24);
 FIELD(rg_trace_config, invalid, 32);

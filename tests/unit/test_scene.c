@@ -363,6 +363,37 @@ START_TEST(what_is_left_out) {
 }
 END_TEST
 
+/* A hint changes no answer; a value that is none is refused. */
+START_TEST(coherence_is_a_hint) {
+    enum { RAYS = 320 };
+    static rg_ray rays[RAYS];
+    static double t[3][RAYS];
+    rg_trace_config config;
+    rg_ray_views views = {.size = sizeof views};
+    for (int i = 0; i < 400; i++) {
+        rg_pose pose = rg_pose_at(unit_random(), unit_random(), unit_random());
+        pose.scale = 0.03;
+        ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, NULL), RG_OK);
+    }
+    for (int i = 0; i < RAYS; i++) {
+        const double from[3] = {0.5, 0.5, -2}, along[3] = {0.01 * (i % 32) - 0.16, 0.03 * (i / 32) - 0.15, 1};
+        rays[i] = rg_ray_from(from, along);
+    }
+    views.origin = rg_input3_packed(rays[0].origin, sizeof *rays, RG_F64);
+    views.direction = rg_input3_packed(rays[0].direction, sizeof *rays, RG_F64);
+    ck_assert_int_eq(rg_trace_config_default(&config, sizeof config), RG_OK);
+    for (int hint = 0; hint < 3; hint++) {
+        rg_hit_views hits = {.size = sizeof hits, .t = {t[hint], sizeof(double), RG_F64}};
+        config.coherence = hint;
+        ck_assert_int_eq(rg_scene_trace_views(scene, &config, &views, &hits, RAYS), RG_OK);
+        ck_assert_mem_eq(t[hint], t[0], sizeof t[0]);
+    }
+    config.coherence = 3;
+    rg_hit_views none = {.size = sizeof none};
+    ck_assert_int_eq(rg_scene_trace_views(scene, &config, &views, &none, RAYS), RG_INVALID_ARGUMENT);
+}
+END_TEST
+
 /* Moves of many keep what their views do not give. */
 START_TEST(moves_keep_what_is_not_given) {
     rg_pose pose = rg_pose_at(1, 2, 3);
@@ -569,6 +600,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, several_grids);
     tcase_add_test(tests, scales);
     tcase_add_test(tests, what_is_left_out);
+    tcase_add_test(tests, coherence_is_a_hint);
     tcase_add_test(tests, moves_keep_what_is_not_given);
     tcase_add_test(tests, no_ray_hits_where_it_starts);
     suite_add_tcase(suite, tests);
