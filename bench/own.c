@@ -109,7 +109,7 @@ void own_destroy(struct own *own) {
 
 /* ------------------------------------------------------------------------------------------------- traces */
 
-static rg_ray_views view_rays(const struct bench_rays *rays) {
+rg_ray_views own_ray_views(const struct bench_rays *rays) {
     rg_ray_views views = {.size = sizeof views};
     views.origin = (rg_input3){rays->origin[0], rays->origin[1], rays->origin[2], sizeof(float), RG_F32};
     views.direction = (rg_input3){rays->direction[0], rays->direction[1], rays->direction[2], sizeof(float), RG_F32};
@@ -124,7 +124,7 @@ static void advance3(rg_input3 *input, uint32_t records) {
 }
 
 void own_trace(struct own *own, const struct bench_rays *rays, uint32_t a_call, const struct bench_answers *answers) {
-    rg_ray_views views = view_rays(rays);
+    rg_ray_views views = own_ray_views(rays);
     rg_hit_views hits = {.size = sizeof hits};
     rg_output occluded = {answers->occluded, 1, RG_U8};
     hits.t = (rg_output){answers->t, sizeof *answers->t, RG_F32};

@@ -19,6 +19,9 @@ struct own {
 struct own *own_create(const struct bench_scene *bodies, uint32_t workers);
 void own_destroy(struct own *own);
 
+/** The rays where they lie. */
+rg_ray_views own_ray_views(const struct bench_rays *rays);
+
 /** Traces the rays with `a_call` rays a call, reading and writing the arrays by views. */
 void own_trace(struct own *own, const struct bench_rays *rays, uint32_t a_call, const struct bench_answers *answers);
 

@@ -36,7 +36,7 @@ KEYS = {
     'peer_way': (str, type(None)),
     'versions': dict,
 }
-SECTIONS = {'builds', 'traces', 'updates', 'frames', 'lasting', 'threads'}
+SECTIONS = {'builds', 'traces', 'updates', 'frames', 'lasting', 'threads', 'omissions'}
 
 
 def run(*more):

@@ -138,6 +138,7 @@ struct rgi_kernels {
     void (*trace_some)(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count);
     /** Takes a packet through. What is certain at its end has not been asked. */
     void (*trace_packet)(const rgi_lattice *lattice, rgi_packet *packet);
+    void (*trace_packets)(const rgi_lattice *lattice, rgi_packet *one, rgi_packet *other);
 };
 
 extern const rgi_kernels rgi_kernels_portable;

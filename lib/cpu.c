@@ -7,11 +7,18 @@
 #include <string.h>
 #endif
 
-/* From the best to the least. */
+/* Those that were built, from the best to the least. */
 static const rgi_kernels *const all[] = {
-#if defined(__x86_64__)
-    &rgi_kernels_avx512, &rgi_kernels_avx2, &rgi_kernels_sse2,
-#elif defined(__aarch64__)
+#if defined(__x86_64__) && !defined(RGI_NO_AVX512)
+    &rgi_kernels_avx512,
+#endif
+#if defined(__x86_64__) && !defined(RGI_NO_AVX2)
+    &rgi_kernels_avx2,
+#endif
+#if defined(__x86_64__) && !defined(RGI_NO_SSE2)
+    &rgi_kernels_sse2,
+#endif
+#if defined(__aarch64__) && !defined(RGI_NO_NEON)
     &rgi_kernels_neon,
 #endif
     &rgi_kernels_portable};
@@ -21,11 +28,11 @@ enum { COUNT = sizeof all / sizeof *all };
 static bool can_run(const rgi_kernels *kernels) {
 #if defined(__x86_64__)
     __builtin_cpu_init();
-    if (kernels == &rgi_kernels_avx512)
+    if (kernels->isa == RG_ISA_AVX512)
         return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
                __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
-    if (kernels == &rgi_kernels_avx2)
+    if (kernels->isa == RG_ISA_AVX2)
         return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
 #else
     (void)kernels;

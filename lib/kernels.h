@@ -575,40 +575,63 @@ RGI_INLINE void visit_block(const rgi_lattice *lattice, rgi_packet *p, packet_st
     s->thin = __builtin_popcount(p->active & ~p->certain) <= THIN;
 }
 
-static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
-    packet_stack s;
-    s.depth = 1;
-    s.refs[0] = lattice->root;
-    s.ts[0] = -INFINITY;
-    s.most = farthest(p);
-    s.thin = false;
-    while (s.depth && p->active) {
-        float t = s.ts[--s.depth];
-        rgi_ref ref = s.refs[s.depth];
-        if (t > s.most) continue;
-        if (rgi_is_block(ref)) {
-            const rgi_block *block = rgi_block_at(lattice, ref);
-            if (s.thin && !meet_child(lattice, p, block->parent)) continue;
-            if (block->next) {
-                s.refs[s.depth] = block->next;
-                s.ts[s.depth++] = t;
-            }
-            visit_block(lattice, p, &s, block);
-            continue;
-        }
-        const rgi_node *n = rgi_arena_at(&lattice->arena, ref);
-        f8 ts;
-        if (s.thin && !meet_child(lattice, p, n->parent)) continue;
-        uint32_t met = meet_together_f8(n->lo[0], RGI_OCTANTS, p, s.most, &ts);
-        uint32_t before = s.depth;
-        s.depth += f8_keep(met, orders[p->negative], ts, n->child, s.ts + s.depth, s.refs + s.depth);
-        for (uint32_t i = before; i < s.depth; i++) fetch_ahead(lattice, s.refs[i]);
-        if (n->own) {
-            s.refs[s.depth] = n->own;
-            s.ts[s.depth++] = t;
-        }
-    }
+static void begin_packet(const rgi_lattice *lattice, const rgi_packet *p, packet_stack *s) {
+    s->depth = 1;
+    s->refs[0] = lattice->root;
+    s->ts[0] = -INFINITY;
+    s->most = farthest(p);
+    s->thin = false;
 }
 
-const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
-    RGI_TEXT(RGI_NAME), RGI_ISA, unite_block, prepare, to_frame, bound, meet, trace_one, trace_some, trace_packet};
+/* Looks into the next node or block on the way of a packet. Returns false at the end. */
+RGI_INLINE bool step_packet(const rgi_lattice *lattice, rgi_packet *p, packet_stack *s) {
+    if (!s->depth || !p->active) return false;
+    float t = s->ts[--s->depth];
+    rgi_ref ref = s->refs[s->depth];
+    if (t > s->most) return true;
+    if (rgi_is_block(ref)) {
+        const rgi_block *block = rgi_block_at(lattice, ref);
+        if (s->thin && !meet_child(lattice, p, block->parent)) return true;
+        if (block->next) {
+            s->refs[s->depth] = block->next;
+            s->ts[s->depth++] = t;
+        }
+        visit_block(lattice, p, s, block);
+        return true;
+    }
+    const rgi_node *n = rgi_arena_at(&lattice->arena, ref);
+    f8 ts;
+    if (s->thin && !meet_child(lattice, p, n->parent)) return true;
+    uint32_t met = meet_together_f8(n->lo[0], RGI_OCTANTS, p, s->most, &ts), before = s->depth;
+    s->depth += f8_keep(met, orders[p->negative], ts, n->child, s->ts + s->depth, s->refs + s->depth);
+    for (uint32_t i = before; i < s->depth; i++) fetch_ahead(lattice, s->refs[i]);
+    if (n->own) {
+        s->refs[s->depth] = n->own;
+        s->ts[s->depth++] = t;
+    }
+    return true;
+}
+
+static void trace_packet(const rgi_lattice *lattice, rgi_packet *p) {
+    packet_stack s;
+    begin_packet(lattice, p, &s);
+    while (step_packet(lattice, p, &s)) continue;
+}
+
+/* Each step of a packet waits for the one before: two packets in turn fill each other's waits. */
+static void trace_packets(const rgi_lattice *lattice, rgi_packet *one, rgi_packet *other) {
+    packet_stack s1, s2;
+    begin_packet(lattice, one, &s1);
+    begin_packet(lattice, other, &s2);
+    bool more1 = true, more2 = true;
+    while (more1 && more2) {
+        more1 = step_packet(lattice, one, &s1);
+        more2 = step_packet(lattice, other, &s2);
+    }
+    while (more1) more1 = step_packet(lattice, one, &s1);
+    while (more2) more2 = step_packet(lattice, other, &s2);
+}
+
+const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,  prepare,
+                                                       to_frame,           bound,        meet,         trace_one,
+                                                       trace_some,         trace_packet, trace_packets};

@@ -41,6 +41,7 @@ static void work_on(job *j) {
     }
 }
 
+#if !defined(RGI_NO_THREADS)
 static bool has_work(const job *j) {
     return __atomic_load_n(&j->taken, __ATOMIC_RELAXED) < j->count;
 }
@@ -67,38 +68,25 @@ static void *worker(void *argument) {
     return NULL;
 }
 
-void rgi_pool_run(rgi_pool *pool, uint64_t count, rgi_body body, void *context) {
-    if (pool->parallel_for && count > 1) {
-        pool->parallel_for(pool->user, count, body, context);
-        return;
-    }
-    job j = {NULL, body, context, count, 0, 0};
-    if (pool->started == 0 || count < 2) {
-        work_on(&j);
-        return;
-    }
+/* Shows the job to the workers, takes part, and waits for those that joined. */
+static void share(rgi_pool *pool, job *j) {
     pthread_mutex_lock(&pool->lock);
-    j.next = pool->jobs;
-    pool->jobs = &j;
+    j->next = pool->jobs;
+    pool->jobs = j;
     pthread_cond_broadcast(&pool->work);
     pthread_mutex_unlock(&pool->lock);
 
-    work_on(&j);
+    work_on(j);
 
     pthread_mutex_lock(&pool->lock);
     job **link = &pool->jobs;
-    while (*link != &j) link = &(*link)->next;
-    *link = j.next;
-    while (j.joined) pthread_cond_wait(&pool->done, &pool->lock);
+    while (*link != j) link = &(*link)->next;
+    *link = j->next;
+    while (j->joined) pthread_cond_wait(&pool->done, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
 }
 
-uint32_t rgi_pool_workers(const rgi_pool *pool) {
-    return pool->parallel_for ? 0 : pool->workers;
-}
-
-void rgi_pool_destroy(rgi_pool *pool) {
-    if (!pool) return;
+static void end_threads(rgi_pool *pool) {
     pthread_mutex_lock(&pool->lock);
     pool->ending = true;
     pthread_cond_broadcast(&pool->work);
@@ -107,9 +95,7 @@ void rgi_pool_destroy(rgi_pool *pool) {
     pthread_cond_destroy(&pool->done);
     pthread_cond_destroy(&pool->work);
     pthread_mutex_destroy(&pool->lock);
-    rgi_memory *memory = pool->memory;
-    rgi_release(memory, pool->threads, pool->workers, sizeof *pool->threads);
-    rgi_release(memory, pool, 1, sizeof *pool);
+    rgi_release(pool->memory, pool->threads, pool->workers, sizeof *pool->threads);
 }
 
 /* Workers start with all signals blocked: the host's handlers are for the host's threads. */
@@ -128,6 +114,57 @@ static rg_result start_threads(rgi_pool *pool) {
                     pool->workers - 1, error);
 }
 
+static rg_result make_threads(rgi_pool *pool, uint32_t workers) {
+    pool->workers = workers;
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->work, NULL);
+    pthread_cond_init(&pool->done, NULL);
+    if (workers < 2) return RG_OK;
+    rg_result result = rgi_allocate(pool->memory, workers, sizeof *pool->threads, "the workers", &pool->threads);
+    return result ? result : start_threads(pool);
+}
+#else
+/* The calling thread works alone, however many were asked for. */
+static void share(rgi_pool *pool, job *j) {
+    (void)pool;
+    work_on(j);
+}
+
+static void end_threads(rgi_pool *pool) {
+    (void)pool;
+}
+
+static rg_result make_threads(rgi_pool *pool, uint32_t workers) {
+    (void)workers;
+    pool->workers = 1;
+    return RG_OK;
+}
+#endif
+
+void rgi_pool_run(rgi_pool *pool, uint64_t count, rgi_body body, void *context) {
+    if (pool->parallel_for && count > 1) {
+        pool->parallel_for(pool->user, count, body, context);
+        return;
+    }
+    job j = {NULL, body, context, count, 0, 0};
+    if (pool->started == 0 || count < 2) {
+        work_on(&j);
+        return;
+    }
+    share(pool, &j);
+}
+
+uint32_t rgi_pool_workers(const rgi_pool *pool) {
+    return pool->parallel_for ? 0 : pool->workers;
+}
+
+void rgi_pool_destroy(rgi_pool *pool) {
+    if (!pool) return;
+    end_threads(pool);
+    rgi_memory *memory = pool->memory;
+    rgi_release(memory, pool, 1, sizeof *pool);
+}
+
 rg_result rgi_pool_create(rgi_memory *memory, uint32_t workers, rg_parallel_for parallel_for, void *user,
                           rgi_pool **out) {
     rgi_pool *pool;
@@ -137,14 +174,7 @@ rg_result rgi_pool_create(rgi_memory *memory, uint32_t workers, rg_parallel_for 
     pool->memory = memory;
     pool->parallel_for = parallel_for;
     pool->user = user;
-    pool->workers = parallel_for ? 1 : workers;
-    pthread_mutex_init(&pool->lock, NULL);
-    pthread_cond_init(&pool->work, NULL);
-    pthread_cond_init(&pool->done, NULL);
-    if (pool->workers > 1) {
-        result = rgi_allocate(memory, pool->workers, sizeof *pool->threads, "the workers", &pool->threads);
-        if (!result) result = start_threads(pool);
-    }
+    result = make_threads(pool, parallel_for ? 1 : workers);
     if (result) {
         rgi_pool_destroy(pool);
         return result;

@@ -196,6 +196,9 @@ rg_result rg_scene_move(rg_scene *scene, rg_object id, const rg_pose *pose) {
 
 bool rgi_is_quick(const rg_scene *scene, const rgi_object *object, const double position[3]) {
     const rgi_any_grid *grid = scene->grids[object->grid].grid;
+    for (int a = 0; a < 3; a++) {
+        if (!(fabs(position[a]) <= RG_COORDINATE_MAX)) return false;
+    }
     return object->linear == RGI_NONE && object->shape->kind == RG_SHAPE_SPHERE && rgi_any_grid_is_loose(grid) &&
            object->place.block != RGI_NONE && rgi_lattice_reaches(&grid->lattice, position, object->reach);
 }

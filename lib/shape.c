@@ -10,8 +10,26 @@
 #include <inttypes.h>
 #include <string.h>
 
+/* Kinds that the Meson option `shapes` leaves out are refused when they are to be made, so what stands in for the
+ * rest of them here is never asked. */
+#if defined(RGI_NO_BOX)
+#define rgi_box_intersect(lo, hi, ray, candidate) false
+#endif
+#if defined(RGI_NO_CAPSULE)
+#define rgi_capsule_init(capsule, a, b, radius) ((void)0)
+#define rgi_capsule_intersect(capsule, ray, candidate) false
+#endif
+#if defined(RGI_NO_MESH)
+#define rgi_mesh_create(memory, views, mesh) RG_OK
+#define rgi_mesh_destroy(mesh) ((void)0)
+#define rgi_mesh_intersect(mesh, ray, candidate) false
+#endif
+
 /* --------------------------------------------------------------------------------------------- intersection */
 
+#if defined(RGI_NO_USER)
+#define user_intersect(user, ray, candidate) false
+#else
 /* Surfaces of one user-defined shape that a ray may pass through before its callback counts as broken. */
 enum { MOST_SURFACES = 1024 };
 
@@ -62,6 +80,7 @@ static bool user_intersect(const rg_user_shape *user, rgi_local_ray *ray, rgi_ca
     ray->failed = true;
     return false;
 }
+#endif
 
 bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidate *candidate) {
     switch (shape->kind) {
@@ -175,6 +194,38 @@ rg_result rg_shape_config_default(rg_shape_config *config, size_t size) {
     return rgi_struct_default(&default_config, sizeof default_config, CONFIG_LEAST, config, size, "rg_shape_config");
 }
 
+/* What a kind is called that the build leaves out; NULL for one that it has. */
+static const char *left_out(rg_shape_kind kind) {
+    switch (kind) {
+#if defined(RGI_NO_SPHERE)
+    case RG_SHAPE_SPHERE:
+        return "spheres";
+#endif
+#if defined(RGI_NO_BOX)
+    case RG_SHAPE_BOX:
+        return "boxes";
+#endif
+#if defined(RGI_NO_CAPSULE)
+    case RG_SHAPE_CAPSULE:
+        return "capsules";
+#endif
+#if defined(RGI_NO_MESH)
+    case RG_SHAPE_MESH:
+        return "meshes";
+#endif
+#if defined(RGI_NO_USER)
+    case RG_SHAPE_USER:
+        return "user-defined shapes";
+#endif
+    default:
+        return NULL;
+    }
+}
+
+static rg_result refuse(rg_shape_kind kind) {
+    return rgi_fail(RG_INVALID_ARGUMENT, "this build has no %s", left_out(kind));
+}
+
 static rg_result shape_new(const rg_shape_config *given, rg_shape_kind kind, rg_shape **out) {
     rg_shape_config config;
     rgi_memory memory;
@@ -203,6 +254,7 @@ static rg_result check_point(const double point[3], const char *name) {
 }
 
 rg_result rg_shape_create_sphere(const rg_shape_config *config, double radius, rg_shape **out) {
+    if (left_out(RG_SHAPE_SPHERE)) return refuse(RG_SHAPE_SPHERE);
     rg_result result = check_radius(radius);
     if (!result) result = shape_new(config, RG_SHAPE_SPHERE, out);
     if (result) return result;
@@ -225,6 +277,7 @@ static rg_result check_box(const double lo[3], const double hi[3], bool infinite
 }
 
 rg_result rg_shape_create_box(const rg_shape_config *config, const double lo[3], const double hi[3], rg_shape **out) {
+    if (left_out(RG_SHAPE_BOX)) return refuse(RG_SHAPE_BOX);
     if (!lo || !hi) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", lo ? "hi" : "lo");
     rg_result result = check_box(lo, hi, true);
     if (!result) result = shape_new(config, RG_SHAPE_BOX, out);
@@ -236,6 +289,7 @@ rg_result rg_shape_create_box(const rg_shape_config *config, const double lo[3],
 
 rg_result rg_shape_create_capsule(const rg_shape_config *config, const double a[3], const double b[3], double radius,
                                   rg_shape **out) {
+    if (left_out(RG_SHAPE_CAPSULE)) return refuse(RG_SHAPE_CAPSULE);
     rg_result result = check_point(a, "a");
     if (!result) result = check_point(b, "b");
     if (!result) result = check_radius(radius);
@@ -273,6 +327,7 @@ static rg_result check_mesh(const rg_mesh_views *v) {
 rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_mesh_views *given, rg_shape **out) {
     rg_mesh_views views;
     rg_shape *shape = NULL;
+    if (left_out(RG_SHAPE_MESH)) return refuse(RG_SHAPE_MESH);
     if (!given) return rgi_fail(RG_INVALID_ARGUMENT, "views is NULL");
     rg_result result = rgi_struct_read(&views, sizeof views, MESH_LEAST, given, "rg_mesh_views");
     if (!result) result = check_mesh(&views);
@@ -291,6 +346,7 @@ rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_mesh_view
 
 rg_result rg_shape_create_user(const rg_shape_config *config, const rg_user_shape *given, rg_shape **out) {
     rg_user_shape user;
+    if (left_out(RG_SHAPE_USER)) return refuse(RG_SHAPE_USER);
     if (!given) return rgi_fail(RG_INVALID_ARGUMENT, "definition is NULL");
     rg_result result = rgi_struct_read(&user, sizeof user, USER_LEAST, given, "rg_user_shape");
     if (!result && !user.intersect) result = rgi_fail(RG_INVALID_ARGUMENT, "rg_user_shape.intersect is NULL");

@@ -14,7 +14,9 @@ bool rgi_sphere_roots(double radius, const double origin[3], const double direct
     rgi_along(origin, -(b / dd), direction, foot);
     double inside = radius * radius - rgi_dot(foot, foot);
     if (!(inside >= 0)) return false;
-    double h = sqrt(dd * inside);
+    /* Under linear parts near the limits of scales the product may underflow. */
+    double square = dd * inside;
+    double h = square >= 0x1p-900 ? sqrt(square) : sqrt(dd) * sqrt(inside);
     double c = rgi_dot(origin, origin) - radius * radius;
     double q = b > 0 ? -b - h : -b + h;
     double far_from_zero = q / dd;

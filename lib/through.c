@@ -17,6 +17,8 @@ typedef struct group {
     const rgi_lattice *lattice; /* which holds all objects of the scene; or NULL */
     rgi_middle middle;          /* of it */
     uint32_t made;              /* bits of the queries that have their ray: in a packet only those that ask */
+    bool together;              /* they go the same way, as `packet` */
+    rgi_packet packet;
     rgi_bundle bundle;
     rgi_query queries[RGI_PACKET];
 } group;
@@ -106,7 +108,7 @@ static const rgi_lattice *only_lattice(const rg_scene *scene) {
     for (uint32_t n = 0; n < scene->grid_places; n++) {
         const rgi_any_grid *grid = scene->grids[n].grid;
         if (!grid || !grid->count) continue;
-        if (only || !rgi_any_grid_is_loose(grid) || grid->lattice.unbounded_count) return NULL;
+        if (only || !rgi_any_grid_is_loose(grid) || !grid->lattice.root) return NULL;
         only = grid;
     }
     return only ? &only->lattice : NULL;
@@ -167,16 +169,31 @@ static rgi_query *query_of(group *g, uint32_t i) {
     return q;
 }
 
-/* What a kernel asks for a ray of a packet. */
-static bool ask_of_packet(rgi_packet *p, uint32_t ray, uint32_t slot) {
-    rgi_query *q = query_of(p->context, ray);
+/* What a query has found bounds its ray in the packet. */
+static void note_found(rgi_packet *p, uint32_t ray, const rgi_query *q) {
     const rgi_beam_scale scale = {p->shift[ray], p->length[ray]};
-    q->done = rgi_query_visit(q, slot);
-    if (!q->found) return q->done;
+    if (!q->found) return;
     p->found |= 1u << ray;
     p->t_hi[ray] = rgi_beam_above(&scale, p->pad[ray], q->walk.t_max);
     p->t_lo[ray] = rgi_beam_below(&scale, p->pad[ray], q->walk.t_max);
+}
+
+/* What a kernel asks for a ray of a packet. */
+static bool ask_of_packet(rgi_packet *p, uint32_t ray, uint32_t slot) {
+    rgi_query *q = query_of(p->context, ray);
+    q->done = rgi_query_visit(q, slot);
+    note_found(p, ray, q);
     return q->done;
+}
+
+/* Objects without a cell are asked before the others, for each ray. */
+static void ask_unbounded(group *g, rgi_packet *p) {
+    for (uint32_t i = 0; i < g->count; i++) {
+        rgi_query *q = query_of(g, i);
+        visit_unbounded(q, g->lattice);
+        note_found(p, i, q);
+        if (q->done) p->active &= ~(1u << i);
+    }
 }
 
 /* Whether of a hit no more is wanted than what rgi_meeting has. */
@@ -242,65 +259,124 @@ static uint32_t finish_packet(group *g, rgi_packet *p) {
     return written;
 }
 
-/* Takes the rays of a bundle through the lattice. Returns the bits of those that have been written. */
-static uint32_t bundle_through(group *g) {
+/* Rays of a bundle that do not go the same way. */
+static void bundle_apart(group *g) {
     const rgi_call *c = g->call;
-    const rgi_kernels *kernels = c->scene->kernels;
-    rgi_packet packet;
-    kernels->to_frame(&g->bundle, g->lattice, &g->middle, &packet);
-    bool alone = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW;
-    if (!alone && kernels->bound(&packet, g->lattice, &g->middle)) {
-        packet.any = c->any;
-        packet.ask_all = asks_all(c);
-        for (uint32_t i = 0; i < g->count; i++) packet.ask_all |= g->bundle.mask[i] == 0;
-        packet.ask = ask_of_packet;
-        packet.context = g;
-        packet.bundle = &g->bundle;
-        packet.found = 0;
-        kernels->trace_packet(g->lattice, &packet);
-        return finish_packet(g, &packet);
-    }
     rgi_beam beams[RGI_PACKET];
     uint32_t used = 0;
-    for (uint32_t rays = packet.active; rays; rays &= rays - 1) {
+    for (uint32_t rays = g->packet.active; rays; rays &= rays - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(rays);
-        rgi_beam_of_packet(&beams[used], &packet, i, g->lattice);
+        rgi_beam_of_packet(&beams[used], &g->packet, i, g->lattice);
         beams[used].ask = ask;
         beams[used].any = c->any && !asks_all(c) && g->bundle.mask[i];
         beams[used++].query = query_of(g, i);
     }
     trace_beams(c, g->lattice, beams, used);
-    return 0;
+}
+
+/* Reads the rays of a group; those that do not go the same way are taken through at once. */
+static void begin(group *g) {
+    const rgi_call *c = g->call;
+    const rgi_kernels *kernels = c->scene->kernels;
+    rgi_packet *p = &g->packet;
+    g->together = false;
+    if (!g->lattice || !load(g)) {
+        each_through_grids(g);
+        return;
+    }
+    kernels->to_frame(&g->bundle, g->lattice, &g->middle, p);
+    p->found = 0;
+    if (g->lattice->unbounded_count) ask_unbounded(g, p);
+    bool alone = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW;
+    if (alone || !kernels->bound(p, g->lattice, &g->middle)) {
+        bundle_apart(g);
+        return;
+    }
+    g->together = true;
+    p->any = c->any;
+    p->ask_all = asks_all(c);
+    for (uint32_t i = 0; i < g->count; i++) p->ask_all |= g->bundle.mask[i] == 0;
+    p->ask = ask_of_packet;
+    p->context = g;
+    p->bundle = &g->bundle;
+}
+
+/* Writes what became of the rays. */
+static void finish(group *g, uint64_t *invalid, bool *failed) {
+    const rgi_call *c = g->call;
+    uint32_t written = g->together ? finish_packet(g, &g->packet) : 0;
+    for (uint32_t i = 0; i < g->count; i++) {
+        if (written >> i & 1) continue;
+        const rgi_query *q = query_of(g, i);
+        *invalid += !q->valid;
+        *failed |= q->failed;
+        if (c->any)
+            rgi_store_integer(&c->occluded, q->index, q->valid && q->found && !q->failed);
+        else
+            rgi_query_write(q);
+    }
+}
+
+/* Takes those that go together through. */
+static void trace_together(group *one, group *other) {
+    const rgi_kernels *kernels = one->call->scene->kernels;
+    if (one->together && other->together)
+        kernels->trace_packets(one->lattice, &one->packet, &other->packet);
+    else if (one->together)
+        kernels->trace_packet(one->lattice, &one->packet);
+    else if (other->together)
+        kernels->trace_packet(other->lattice, &other->packet);
+}
+
+/* For all rays of a range. */
+static void init(group *g, const rgi_call *c, uint64_t rays) {
+    g->call = c;
+    g->together = false;
+    g->lattice = rays < MIN_PACKET ? NULL : only_lattice(c->scene);
+    if (g->lattice) g->middle = rgi_lattice_middle(g->lattice);
+    /* Then rays may spread as they like to count as going the same way. */
+    if (c->config.coherence == RG_COHERENCE_HIGH) g->middle.spacing = INFINITY;
+    for (uint32_t i = 0; i < RGI_PACKET && i < rays; i++) rgi_query_init(&g->queries[i], c);
+}
+
+static uint64_t next_rays(group *g, uint64_t at, uint64_t last) {
+    g->first = at;
+    g->count = last - at < RGI_PACKET ? (uint32_t)(last - at) : RGI_PACKET;
+    begin(g);
+    return at + g->count;
+}
+
+/* A few rays, on a small stack. */
+static void through_one(rgi_call *c, uint64_t first, uint64_t last, uint64_t *invalid, bool *failed) {
+    group g;
+    init(&g, c, last - first);
+    next_rays(&g, first, last);
+    if (g.together) c->scene->kernels->trace_packet(g.lattice, &g.packet);
+    finish(&g, invalid, failed);
+}
+
+static void through_many(rgi_call *c, uint64_t first, uint64_t last, uint64_t *invalid, bool *failed) {
+    group one, other;
+    init(&one, c, last - first);
+    init(&other, c, last - first);
+    while (first < last) {
+        first = next_rays(&one, first, last);
+        other.together = false;
+        other.count = 0;
+        if (first < last) first = next_rays(&other, first, last);
+        trace_together(&one, &other);
+        finish(&one, invalid, failed);
+        finish(&other, invalid, failed);
+    }
 }
 
 void rgi_through(rgi_call *c, uint64_t first, uint64_t last) {
-    group g;
     uint64_t invalid = 0;
     bool failed = false;
-    g.call = c;
-    g.lattice = last - first < MIN_PACKET ? NULL : only_lattice(c->scene);
-    if (g.lattice) g.middle = rgi_lattice_middle(g.lattice);
-    /* Then rays may spread as they like to count as going the same way. */
-    if (c->config.coherence == RG_COHERENCE_HIGH) g.middle.spacing = INFINITY;
-    for (uint32_t i = 0; i < RGI_PACKET && i < last - first; i++) rgi_query_init(&g.queries[i], c);
-    for (g.first = first; g.first < last; g.first += g.count) {
-        uint32_t written = 0;
-        g.count = last - g.first < RGI_PACKET ? (uint32_t)(last - g.first) : RGI_PACKET;
-        if (g.lattice && load(&g))
-            written = bundle_through(&g);
-        else
-            each_through_grids(&g);
-        for (uint32_t i = 0; i < g.count; i++) {
-            if (written >> i & 1) continue;
-            const rgi_query *q = query_of(&g, i);
-            invalid += !q->valid;
-            failed |= q->failed;
-            if (c->any)
-                rgi_store_integer(&c->occluded, q->index, q->valid && q->found && !q->failed);
-            else
-                rgi_query_write(q);
-        }
-    }
+    if (last - first <= RGI_PACKET)
+        through_one(c, first, last, &invalid, &failed);
+    else
+        through_many(c, first, last, &invalid, &failed);
     if (invalid) __atomic_fetch_add(&c->invalid, invalid, __ATOMIC_RELAXED);
     if (failed) __atomic_store_n(&c->failed, 1, __ATOMIC_RELAXED);
 }

@@ -40,7 +40,8 @@ typedef struct rg_scene_config {
     size_t size;
     /**
      * Threads that trace large calls together, the calling one among them: 0 for one a processor, 1 for the calling
-     * thread alone (no thread is made), at most 1024. Ignored with parallel_for.
+     * thread alone (no thread is made), at most 1024. Ignored with parallel_for. A library that was built without
+     * threads takes any as 1.
      */
     uint32_t workers;
     uint32_t reserved; /* 0 */

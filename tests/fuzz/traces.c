@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { RAYS = 5 };
+enum { RAYS = 5, NEIGHBOURS = 16 };
 
 static bool misbehaves(const script *s) {
     for (int i = 0; i < s->object_count; i++) {
@@ -166,6 +166,36 @@ void occluded_views(script *s) {
     script_check(rg_scene_occluded_views(s->scene, &config, &in, &out, RAYS));
 }
 
+/* Neighbouring rays at an object, which may be taken through the scene together: all that is known of their hits, the
+ * least that is, and whether there is one, must be the same as for each alone. */
+static void judge_neighbours(script *s, const double from[3], const double along[3]) {
+    rg_ray rays[NEIGHBOURS];
+    rg_hit hits[NEIGHBOURS], few[NEIGHBOURS], alone;
+    uint8_t occluded[NEIGHBOURS];
+    for (int i = 0; i < NEIGHBOURS; i++) {
+        const double d[3] = {along[0], along[1] + 0.002 * (i % 4), along[2] + 0.002 * (i / 4)};
+        rays[i] = rg_ray_from(from, d);
+    }
+    rg_ray_views in = {.size = sizeof in};
+    in.origin = rg_input3_packed(rays[0].origin, sizeof *rays, RG_F64);
+    in.direction = rg_input3_packed(rays[0].direction, sizeof *rays, RG_F64);
+    rg_hit_views out = {.size = sizeof out, .t = {&few[0].t, sizeof *few, RG_F64}};
+    out.object = (rg_output){&few[0].object, sizeof *few, RG_U64};
+    if (script_check(rg_scene_trace(s->scene, rays, hits, NEIGHBOURS)) != RG_OK) return;
+    if (script_check(rg_scene_trace_views(s->scene, NULL, &in, &out, NEIGHBOURS)) != RG_OK) return;
+    if (script_check(rg_scene_occluded(s->scene, rays, occluded, NEIGHBOURS)) != RG_OK) return;
+    for (int i = 0; i < NEIGHBOURS && can_judge(s); i++) {
+        judge_ray(s, &rays[i], RG_CULL_NONE, &hits[i]);
+        if (script_check(rg_scene_trace(s->scene, &rays[i], &alone, 1)) != RG_OK) return;
+        if (memcmp(&alone, &hits[i], sizeof alone) != 0)
+            fail_on(s, &rays[i], RG_CULL_NONE, &hits[i], "another hit than alone");
+        if ((few[i].t != alone.t && !isnan(alone.t)) || few[i].object != alone.object)
+            fail_on(s, &rays[i], RG_CULL_NONE, &few[i], "another hit where less is asked for");
+        if (occluded[i] != (alone.object != RG_NO_OBJECT))
+            fail_on(s, &rays[i], RG_CULL_NONE, &hits[i], "occluded, or not, against the hit");
+    }
+}
+
 /* From afar at each object and from its middle outward, each way of culling. */
 void script_judge(script *s) {
     for (size_t n = 0; n < reference_count(s->reference); n++) {
@@ -173,6 +203,7 @@ void script_judge(script *s) {
         double reach = 10 + fabs(at[0]) * 1e-3;
         const double from[3] = {at[0] - reach, at[1], at[2] + 0.125}, along[3] = {1, 0.03125, -0.015625};
         const double away[3] = {0.25, 1, n % 2 ? 0 : -3};
+        if (n < 4) judge_neighbours(s, from, along);
         rg_ray rays[2] = {rg_ray_from(from, along), rg_ray_from(at, away)};
         rg_hit hits[2];
         rg_ray_views in = {.size = sizeof in};

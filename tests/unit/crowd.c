@@ -95,3 +95,14 @@ rgi_bound crowd_bound(const crowd *c) {
     for (int a = 0; a < 3; a++) at[a] = c->centre * (a == 1 ? -0.7 : 1) + c->spread * (2 * unit_random() - 1);
     return unit_random() < c->balls ? ball_at(at[0], at[1], at[2], size) : box_at(at[0], at[1], at[2], size);
 }
+
+rgi_bound shifted(const rgi_bound *from, double by) {
+    rgi_bound b = *from;
+    for (int a = 0; a < 3; a++) {
+        double shift = by * (2 * unit_random() - 1);
+        b.centre[a] += shift;
+        b.lo[a] = b.ball ? b.centre[a] - b.radius : b.lo[a] + shift;
+        b.hi[a] = b.ball ? b.centre[a] + b.radius : b.hi[a] + shift;
+    }
+    return b;
+}

@@ -6,12 +6,6 @@
 #include "lattice.h"
 #include "unit.h"
 
-/** An assertion for inner loops: those of Check take a system call each. */
-#define MUST(holds)                                                                                                  \
-    do {                                                                                                             \
-        if (!(holds)) ck_abort_msg("%s", #holds);                                                                    \
-    } while (0)
-
 enum { CROWD_MOST = 40000, CROWDS = 10 };
 
 /** Where a crowd is, and of what sizes. */
@@ -50,5 +44,7 @@ rgi_bound ball_at(double x, double y, double z, double radius);
 /** A random box that holds a point, and reaches up to `size` from it on each side. */
 rgi_bound box_at(double x, double y, double z, double size);
 rgi_bound crowd_bound(const crowd *c);
+/** The same somewhere else, up to `by` away on each axis. */
+rgi_bound shifted(const rgi_bound *from, double by);
 
 #endif

@@ -10,19 +10,6 @@
 
 enum { MOST = CROWD_MOST };
 
-/* ------------------------------------------------------------------------------------------------ bounds */
-
-static rgi_bound shifted(const rgi_bound *from, double by) {
-    rgi_bound b = *from;
-    for (int a = 0; a < 3; a++) {
-        double shift = by * (2 * unit_random() - 1);
-        b.centre[a] += shift;
-        b.lo[a] = b.ball ? b.centre[a] - b.radius : b.lo[a] + shift;
-        b.hi[a] = b.ball ? b.centre[a] + b.radius : b.hi[a] + shift;
-    }
-    return b;
-}
-
 /* ------------------------------------------------------------------------------------------------ checking */
 
 typedef struct tally {

@@ -11,6 +11,12 @@
 /** Each test file defines its suite; unit.c runs it. */
 Suite *unit_suite(void);
 
+/** An assertion for inner loops: those of Check take a system call each. */
+#define MUST(holds)                                                                                                  \
+    do {                                                                                                             \
+        if (!(holds)) ck_abort_msg("%s", #holds);                                                                    \
+    } while (0)
+
 /** A number in [0, 1). */
 double unit_random(void);
 
