@@ -97,7 +97,8 @@ typedef struct rgi_packet {
     bool (*ask)(struct rgi_packet *packet, uint32_t ray, uint32_t slot);
     void *context;
     const rgi_bundle *bundle;
-    uint32_t visits;
+    uint32_t visits;   /* nodes and blocks looked into */
+    uint32_t patience; /* with more than so many it ends before it is through */
     /* the planes: x[across] - slope * x[axis], for rays between lo and hi */
     uint32_t axis, across[2];
     uint32_t far_of_hi[2], far_of_lo[2]; /* which end of a box along the axis counts for each plane: see end_of */
@@ -136,7 +137,8 @@ struct rgi_kernels {
     void (*trace_one)(const rgi_lattice *lattice, rgi_beam *beam);
     /** Takes up to RGI_PACKET rays through side by side, each on its own way, so that waits for memory overlap. */
     void (*trace_some)(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count);
-    /** Takes a packet through. What is certain at its end has not been asked. */
+    /** Takes a packet through. What is certain at its end has not been asked. If its patience
+     *  has ended before, those still active are to go on as beams. */
     void (*trace_packet)(const rgi_lattice *lattice, rgi_packet *packet);
     void (*trace_packets)(const rgi_lattice *lattice, rgi_packet *one, rgi_packet *other);
 };

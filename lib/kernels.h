@@ -585,10 +585,11 @@ static void begin_packet(const rgi_lattice *lattice, const rgi_packet *p, packet
 
 /* Looks into the next node or block on the way of a packet. Returns false at the end. */
 RGI_INLINE bool step_packet(const rgi_lattice *lattice, rgi_packet *p, packet_stack *s) {
-    if (!s->depth || !p->active) return false;
+    if (!s->depth || !p->active || p->visits > p->patience) return false;
     float t = s->ts[--s->depth];
     rgi_ref ref = s->refs[s->depth];
     if (t > s->most) return true;
+    p->visits++;
     if (rgi_is_block(ref)) {
         const rgi_block *block = rgi_block_at(lattice, ref);
         if (s->thin && !meet_child(lattice, p, block->parent)) return true;

@@ -6,8 +6,15 @@
 
 #include <string.h>
 
-/* Fewer rays are better off on their own. */
-enum { MIN_PACKET = 4 };
+enum {
+    /* Fewer rays are better off on their own. */
+    MIN_PACKET = 4,
+    /* Nodes and blocks that a packet looks into before its rays go on apart: where objects are dense against the
+     * distance of the rays, as in a small cluster, the planes around them hold too many. Some 17 to 50 are common. */
+    PATIENCE = 160,
+    /* After packets given up in a row 1, 3, 7, then 15 groups are not tried together. */
+    MOST_LOST = 4
+};
 
 /** Rays that are worked on at a time. */
 typedef struct group {
@@ -17,6 +24,8 @@ typedef struct group {
     const rgi_lattice *lattice; /* which holds all objects of the scene; or NULL */
     rgi_middle middle;          /* of it */
     uint32_t made;              /* bits of the queries that have their ray: in a packet only those that ask */
+    uint32_t lost;              /* packets in a row that were given up */
+    uint32_t apart;             /* groups that are not tried together because of it */
     bool together;              /* they go the same way, as `packet` */
     rgi_packet packet;
     rgi_bundle bundle;
@@ -287,13 +296,15 @@ static void begin(group *g) {
     kernels->to_frame(&g->bundle, g->lattice, &g->middle, p);
     p->found = 0;
     if (g->lattice->unbounded_count) ask_unbounded(g, p);
-    bool alone = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW;
+    bool alone = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW || g->apart;
+    g->apart -= g->apart > 0;
     if (alone || !kernels->bound(p, g->lattice, &g->middle)) {
         bundle_apart(g);
         return;
     }
     g->together = true;
     p->any = c->any;
+    p->patience = PATIENCE;
     p->ask_all = asks_all(c);
     for (uint32_t i = 0; i < g->count; i++) p->ask_all |= g->bundle.mask[i] == 0;
     p->ask = ask_of_packet;
@@ -301,9 +312,28 @@ static void begin(group *g) {
     p->bundle = &g->bundle;
 }
 
+/* After a packet that has looked into too much: what is certain is asked, and the rays still on their way begin anew.
+ */
+static void go_on_apart(group *g) {
+    rgi_packet *p = &g->packet;
+    for (uint32_t rays = g->call->any ? 0 : p->certain; rays; rays &= rays - 1) {
+        uint32_t ray = (uint32_t)__builtin_ctz(rays), slot;
+        memcpy(&slot, &p->best[ray], sizeof slot);
+        (void)ask_of_packet(p, ray, slot);
+        p->certain &= ~(1u << ray);
+    }
+    bundle_apart(g);
+    g->lost += g->lost < MOST_LOST;
+    g->apart = (1u << g->lost) - 1;
+}
+
 /* Writes what became of the rays. */
 static void finish(group *g, uint64_t *invalid, bool *failed) {
     const rgi_call *c = g->call;
+    if (g->together && g->packet.visits > PATIENCE)
+        go_on_apart(g);
+    else if (g->together)
+        g->lost = 0;
     uint32_t written = g->together ? finish_packet(g, &g->packet) : 0;
     for (uint32_t i = 0; i < g->count; i++) {
         if (written >> i & 1) continue;
@@ -331,6 +361,7 @@ static void trace_together(group *one, group *other) {
 /* For all rays of a range. */
 static void init(group *g, const rgi_call *c, uint64_t rays) {
     g->call = c;
+    g->lost = g->apart = 0;
     g->together = false;
     g->lattice = rays < MIN_PACKET ? NULL : only_lattice(c->scene);
     if (g->lattice) g->middle = rgi_lattice_middle(g->lattice);

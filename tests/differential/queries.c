@@ -253,6 +253,7 @@ void world_query_filtered(world *w, uint32_t count) {
     filter_data data = {w, count};
     rg_trace_config config = {.size = sizeof config, .filter = only_even_slots, .filter_user = &data};
     config.cull = (rg_cull)random_below(&w->random, 3);
+    config.coherence = (rg_coherence)random_below(&w->random, 3);
     world_rays(w, rays, count);
     for (uint32_t i = 0; i < count; i++) {
         w->invalid_rays += reference_valid(&rays[i]) ? 0 : 2;
@@ -287,6 +288,7 @@ void world_query_views(world *w, uint32_t count) {
     uint64_t invalid = 0, expected_invalid = 0;
     rg_trace_config config = {.size = sizeof config, .invalid = &invalid};
     config.cull = CULLS[random_below(&w->random, 3)];
+    config.coherence = (rg_coherence)random_below(&w->random, 3); /* true or not, it changes no answer */
     world_rays(w, rays, count);
     for (uint32_t i = 0; i < count; i++) {
         expected_invalid += !reference_valid(&rays[i]);

@@ -26,7 +26,8 @@ typedef struct variant {
     rg_grid_kind kind;
     uint32_t resolution, workers;
     uint64_t at_once;
-    bool reorders; /* ids are others: not for sets with ties */
+    rg_coherence coherence; /* told, true or not */
+    bool reorders;          /* ids are others: not for sets with ties */
     bool backward, many, churned, drifted, host_jobs, configured;
 } variant;
 
@@ -45,6 +46,10 @@ static const variant VARIANTS[] = {
     {"after others came and went", .kind = RG_GRID_LOOSE, .workers = 1, .at_once = ALL_AT_ONCE, .reorders = true,
      .churned = true},
     {"after a drift", .kind = RG_GRID_LOOSE, .workers = 1, .at_once = ALL_AT_ONCE, .drifted = true},
+    {"told to be coherent", .kind = RG_GRID_LOOSE, .workers = 2, .at_once = ALL_AT_ONCE,
+     .coherence = RG_COHERENCE_HIGH},
+    {"told to be incoherent", .kind = RG_GRID_LOOSE, .workers = 1, .at_once = ALL_AT_ONCE,
+     .coherence = RG_COHERENCE_LOW},
     {"hierarchical", .kind = RG_GRID_HIERARCHICAL, .workers = 1, .at_once = ALL_AT_ONCE},
     {"hierarchical, one ray at once", .kind = RG_GRID_HIERARCHICAL, .workers = 1, .at_once = 1},
     {"hierarchical, 16 at once, churned", .kind = RG_GRID_HIERARCHICAL, .workers = 2, .at_once = 16, .reorders = true,
@@ -152,35 +157,58 @@ static void name_objects(rg_hit *hits, const rg_object *ids) {
     }
 }
 
-/* Where little is asked for, the rest of a hit is taken from where all was asked for. */
-static void trace_little(rg_scene *scene, uint64_t at_once, rg_hit *hits) {
-    const ptrdiff_t stride = sizeof *hits, ray = sizeof *data.ray;
-    for (uint64_t i = 0; i < (uint64_t)data.rays; i += at_once) {
-        uint64_t left = (uint64_t)data.rays - i, count = left < at_once ? left : at_once;
-        rg_hit_views out = {.size = sizeof out};
+static rg_hit_views views_of(rg_hit *hits, bool all) {
+    const ptrdiff_t stride = sizeof *hits;
+    rg_hit_views views = {.size = sizeof views};
+    views.t = (rg_output){&hits->t, stride, RG_F64};
+    views.object = (rg_output){&hits->object, stride, RG_U64};
+    views.primitive = (rg_output){&hits->primitive, stride, RG_U32};
+    if (!all) return views;
+    views.position = rg_output3_packed(hits->position, stride, RG_F64);
+    views.normal = rg_output3_packed(hits->normal, stride, RG_F32);
+    views.offset = (rg_output){&hits->offset, stride, RG_F32};
+    views.u = (rg_output){&hits->u, stride, RG_F32};
+    views.v = (rg_output){&hits->v, stride, RG_F32};
+    return views;
+}
+
+/* By views; what is not asked for stays as it is in `hits`. */
+static void trace_views(rg_scene *scene, const variant *v, rg_hit *hits, bool all, uint8_t *occluded) {
+    const ptrdiff_t ray = sizeof *data.ray;
+    const rg_trace_config config = {.size = sizeof config, .coherence = v->coherence};
+    for (uint64_t i = 0; i < (uint64_t)data.rays; i += v->at_once) {
+        uint64_t left = (uint64_t)data.rays - i, count = left < v->at_once ? left : v->at_once;
+        rg_hit_views out = views_of(hits + i, all);
+        rg_output flags = {occluded + i, 1, RG_U8};
         rg_ray_views in = {.size = sizeof in};
         in.origin = rg_input3_packed(data.ray[i].origin, ray, RG_F64);
         in.direction = rg_input3_packed(data.ray[i].direction, ray, RG_F64);
         in.t_min = (rg_input){&data.ray[i].t_min, ray, RG_F64};
         in.t_max = (rg_input){&data.ray[i].t_max, ray, RG_F64};
         in.mask = (rg_input){&data.ray[i].mask, ray, RG_U32};
-        out.t = (rg_output){&hits[i].t, stride, RG_F64};
-        out.object = (rg_output){&hits[i].object, stride, RG_U64};
-        out.primitive = (rg_output){&hits[i].primitive, stride, RG_U32};
-        golden_demand(rg_scene_trace_views(scene, NULL, &in, &out, count), "trace_views");
+        golden_demand(rg_scene_trace_views(scene, &config, &in, &out, count), "trace_views");
+        if (all) golden_demand(rg_scene_occluded_views(scene, &config, &in, &flags, count), "occluded_views");
+    }
+}
+
+static void trace_plain(rg_scene *scene, const variant *v, rg_hit *hits, uint8_t *occluded) {
+    for (uint64_t i = 0; i < (uint64_t)data.rays; i += v->at_once) {
+        uint64_t left = (uint64_t)data.rays - i, count = left < v->at_once ? left : v->at_once;
+        golden_demand(rg_scene_trace(scene, data.ray + i, hits + i, count), "trace");
+        golden_demand(rg_scene_occluded(scene, data.ray + i, occluded + i, count), "occluded");
     }
 }
 
 static void trace_variant(const variant *v, rg_hit *hits, rg_hit *little, uint8_t *occluded) {
     static rg_object ids[GOLDEN_OBJECTS];
     rg_scene *scene = make_scene(v, ids);
-    for (uint64_t i = 0; i < (uint64_t)data.rays; i += v->at_once) {
-        uint64_t left = (uint64_t)data.rays - i, count = left < v->at_once ? left : v->at_once;
-        golden_demand(rg_scene_trace(scene, data.ray + i, hits + i, count), "trace");
-        golden_demand(rg_scene_occluded(scene, data.ray + i, occluded + i, count), "occluded");
-    }
+    memset(hits, 0, (size_t)data.rays * sizeof *hits);
+    if (v->coherence)
+        trace_views(scene, v, hits, true, occluded);
+    else
+        trace_plain(scene, v, hits, occluded);
     memcpy(little, hits, (size_t)data.rays * sizeof *hits);
-    trace_little(scene, v->at_once, little);
+    trace_views(scene, v, little, false, occluded);
     name_objects(hits, ids);
     name_objects(little, ids);
     golden_demand(rg_scene_destroy(&scene), "destroy");

@@ -266,11 +266,12 @@ static void judge_any(const witness *w, const char *isa) {
 }
 
 /* Takes rays through as a packet, if they go the same way. mode 0: all are asked; 1: the nearest; 2: any. */
-static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count, int mode, tally *all) {
+static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count, bool spread, int mode, tally *all) {
     static witness witnesses[RGI_PACKET];
     static rgi_ray ready[RGI_PACKET];
-    const rgi_middle middle = rgi_lattice_middle(&store.lattice);
+    rgi_middle middle = rgi_lattice_middle(&store.lattice);
     rgi_bundle b = {.count = count};
+    if (spread) middle.spacing = INFINITY; /* as where the host says that they go the same way */
     rgi_packet p;
     for (uint32_t i = 0; i < RGI_PACKET; i++) {
         const rg_ray *r = &rays[i < count ? i : 0];
@@ -291,6 +292,7 @@ static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count
     p.context = witnesses;
     p.bundle = &b;
     p.found = 0;
+    p.patience = UINT32_MAX;
     k->trace_packet(&store.lattice, &p);
     all->packets++;
     ask_certain(&p, witnesses, count, all, k->name);
@@ -318,9 +320,11 @@ static void trace_batches(const rgi_kernels *k, const crowd *c, int mode, tally 
         for (int i = 0; i < RGI_PACKET && round % 3 == 0; i++) {
             double d[3];
             graze(aim, eye, d);
+            for (int a = 0; a < 3 && round % 4 == 0; a++)
+                d[a] += 0.3 * (2 * unit_random() - 1) * fabs(d[(a + 1) % 3]);
             rays[i] = rg_ray_from(eye, d);
         }
-        trace_batch(k, rays, 4 + (uint32_t)machine_below(13), mode, all);
+        trace_batch(k, rays, 4 + (uint32_t)machine_below(13), round % 4 == 0, mode, all);
     }
 }
 
