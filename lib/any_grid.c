@@ -9,77 +9,77 @@
 #include <stdio.h>
 #include <string.h>
 
-rg_result rgi_any_grid_init(rgi_any_grid *store, rg_scene *scene, const rg_grid_config *config) {
-    memset(store, 0, sizeof *store);
-    store->config = *config;
-    store->log = scene->log;
-    store->log_user = scene->log_user;
-    if (rgi_any_grid_is_loose(store)) {
-        rgi_lattice_init(&store->lattice, &scene->memory, &scene->objects, offsetof(rgi_object, place),
+rg_result rgi_any_grid_init(rgi_any_grid *grid, rg_scene *scene, const rg_grid_config *config) {
+    memset(grid, 0, sizeof *grid);
+    grid->config = *config;
+    grid->log = scene->log;
+    grid->log_user = scene->log_user;
+    if (rgi_any_grid_is_loose(grid)) {
+        rgi_lattice_init(&grid->lattice, &scene->memory, &scene->objects, offsetof(rgi_object, place),
                          scene->kernels);
         return RG_OK;
     }
-    return rgi_grid_init(&store->cells, &scene->memory, config, scene->log, scene->log_user);
+    return rgi_grid_init(&grid->cells, &scene->memory, config, scene->log, scene->log_user);
 }
 
-void rgi_any_grid_free(rgi_any_grid *store) {
-    if (rgi_any_grid_is_loose(store))
-        rgi_lattice_free(&store->lattice);
+void rgi_any_grid_free(rgi_any_grid *grid) {
+    if (rgi_any_grid_is_loose(grid))
+        rgi_lattice_free(&grid->lattice);
     else
-        rgi_grid_free(&store->cells);
+        rgi_grid_free(&grid->cells);
 }
 
 /* ------------------------------------------------------------------------------------------------- objects */
 
-rg_result rgi_any_grid_insert(rgi_any_grid *store, rg_scene *scene, uint32_t slot, const rgi_bound *bound) {
+rg_result rgi_any_grid_insert(rgi_any_grid *grid, rg_scene *scene, uint32_t slot, const rgi_bound *bound) {
     rg_result result;
-    if (rgi_any_grid_is_loose(store))
-        result = rgi_lattice_insert(&store->lattice, slot, bound);
+    if (rgi_any_grid_is_loose(grid))
+        result = rgi_lattice_insert(&grid->lattice, slot, bound);
     else
         result =
-            rgi_grid_insert(&store->cells, slot, bound->lo, bound->hi, &rgi_scene_object(scene, slot)->place.block);
-    store->count += !result;
+            rgi_grid_insert(&grid->cells, slot, bound->lo, bound->hi, &rgi_scene_object(scene, slot)->place.block);
+    grid->count += !result;
     return result;
 }
 
-rg_result rgi_any_grid_move(rgi_any_grid *store, rgi_object *object, uint32_t slot, const rgi_bound *bound) {
-    if (!rgi_any_grid_is_loose(store)) return rgi_grid_move(&store->cells, object->place.block, bound->lo, bound->hi);
-    return rgi_lattice_move(&store->lattice, slot, bound);
+rg_result rgi_any_grid_move(rgi_any_grid *grid, rgi_object *object, uint32_t slot, const rgi_bound *bound) {
+    if (!rgi_any_grid_is_loose(grid)) return rgi_grid_move(&grid->cells, object->place.block, bound->lo, bound->hi);
+    return rgi_lattice_move(&grid->lattice, slot, bound);
 }
 
-void rgi_any_grid_remove(rgi_any_grid *store, rgi_object *object, uint32_t slot) {
-    store->count--;
-    if (rgi_any_grid_is_loose(store))
-        rgi_lattice_remove(&store->lattice, slot);
+void rgi_any_grid_remove(rgi_any_grid *grid, rgi_object *object, uint32_t slot) {
+    grid->count--;
+    if (rgi_any_grid_is_loose(grid))
+        rgi_lattice_remove(&grid->lattice, slot);
     else
-        rgi_grid_remove(&store->cells, object->place.block);
+        rgi_grid_remove(&grid->cells, object->place.block);
 }
 
-void rgi_any_grid_need_insert(const rgi_any_grid *store, const rgi_bound *bound, rgi_grid_need *need) {
-    if (!rgi_any_grid_is_loose(store)) rgi_grid_need_insert(&store->cells, bound->lo, bound->hi, need);
+void rgi_any_grid_need_insert(const rgi_any_grid *grid, const rgi_bound *bound, rgi_grid_need *need) {
+    if (!rgi_any_grid_is_loose(grid)) rgi_grid_need_insert(&grid->cells, bound->lo, bound->hi, need);
 }
 
-bool rgi_any_grid_need_move(const rgi_any_grid *store, const rgi_object *object, const rgi_bound *bound,
+bool rgi_any_grid_need_move(const rgi_any_grid *grid, const rgi_object *object, const rgi_bound *bound,
                             rgi_grid_need *need) {
-    if (!rgi_any_grid_is_loose(store))
-        return rgi_grid_need_move(&store->cells, object->place.block, bound->lo, bound->hi, need);
-    need->members += !rgi_lattice_has_cell(&store->lattice, &object->place, bound);
+    if (!rgi_any_grid_is_loose(grid))
+        return rgi_grid_need_move(&grid->cells, object->place.block, bound->lo, bound->hi, need);
+    need->members += !rgi_lattice_has_cell(&grid->lattice, &object->place, bound);
     return false;
 }
 
-rg_result rgi_any_grid_reserve(rgi_any_grid *store, const rgi_grid_need *need) {
-    return rgi_any_grid_is_loose(store) ? rgi_lattice_reserve(&store->lattice, need->members)
-                                        : rgi_grid_reserve(&store->cells, need);
+rg_result rgi_any_grid_reserve(rgi_any_grid *grid, const rgi_grid_need *need) {
+    return rgi_any_grid_is_loose(grid) ? rgi_lattice_reserve(&grid->lattice, need->members)
+                                       : rgi_grid_reserve(&grid->cells, need);
 }
 
 /* ---------------------------------------------------------------------------------------------- rebuilding */
 
-static void tell(const rgi_any_grid *store, const char *why) {
+static void tell(const rgi_any_grid *grid, const char *why) {
     char line[160];
-    if (!store->log) return;
-    snprintf(line, sizeof line, "grid rebuilt (%s): %" PRIu64 " objects, %" PRIu32 " nodes", why, store->count,
-             rgi_lattice_nodes(&store->lattice));
-    store->log(store->log_user, line);
+    if (!grid->log) return;
+    snprintf(line, sizeof line, "grid rebuilt (%s): %" PRIu64 " objects, %" PRIu32 " nodes", why, grid->count,
+             rgi_lattice_nodes(&grid->lattice));
+    grid->log(grid->log_user, line);
 }
 
 /** Objects by their slots. */
@@ -183,19 +183,19 @@ static rg_result make_anew(rgi_any_grid *grid, rg_scene *scene, uint32_t index, 
     return RG_OK;
 }
 
-rg_result rgi_any_grid_configure(rgi_any_grid *store, rg_scene *scene, uint32_t index, const rg_grid_config *config) {
-    if (rgi_any_grid_is_loose(store) || config->kind == RG_GRID_LOOSE)
-        return make_anew(store, scene, index, config, "configured");
-    rg_result result = rgi_grid_configure(&store->cells, config);
-    if (!result) store->config = *config;
+rg_result rgi_any_grid_configure(rgi_any_grid *grid, rg_scene *scene, uint32_t index, const rg_grid_config *config) {
+    if (rgi_any_grid_is_loose(grid) || config->kind == RG_GRID_LOOSE)
+        return make_anew(grid, scene, index, config, "configured");
+    rg_result result = rgi_grid_configure(&grid->cells, config);
+    if (!result) grid->config = *config;
     return result;
 }
 
-rg_result rgi_any_grid_rebuild(rgi_any_grid *store, rg_scene *scene, uint32_t index) {
-    if (!rgi_any_grid_is_loose(store)) return rgi_grid_rebuild(&store->cells);
-    const rg_grid_config config = store->config;
-    rg_result result = make_anew(store, scene, index, &config, "asked for");
-    if (!result) store->unbounded_at = store->lattice.unbounded_count;
+rg_result rgi_any_grid_rebuild(rgi_any_grid *grid, rg_scene *scene, uint32_t index) {
+    if (!rgi_any_grid_is_loose(grid)) return rgi_grid_rebuild(&grid->cells);
+    const rg_grid_config config = grid->config;
+    rg_result result = make_anew(grid, scene, index, &config, "asked for");
+    if (!result) grid->unbounded_at = grid->lattice.unbounded_count;
     return result;
 }
 
@@ -221,36 +221,36 @@ static uint32_t index_of(const rg_scene *scene, const rgi_any_grid *grid) {
     return i;
 }
 
-void rgi_any_grid_settle(rgi_any_grid *store, rg_scene *scene, uint64_t changes) {
-    if (!rgi_any_grid_is_loose(store)) {
-        rgi_grid_settle(&store->cells);
+void rgi_any_grid_settle(rgi_any_grid *grid, rg_scene *scene, uint64_t changes) {
+    if (!rgi_any_grid_is_loose(grid)) {
+        rgi_grid_settle(&grid->cells);
         return;
     }
-    if (store->next_look > changes) {
-        store->next_look -= changes;
+    if (grid->next_look > changes) {
+        grid->next_look -= changes;
         return;
     }
-    store->next_look = LOOK_AFTER;
-    const char *why = why_new_frame(store);
+    grid->next_look = LOOK_AFTER;
+    const char *why = why_new_frame(grid);
     if (!why) return;
-    const rg_grid_config config = store->config;
+    const rg_grid_config config = grid->config;
     rgi_fail_quietly(true);
-    rg_result result = make_anew(store, scene, index_of(scene, store), &config, why);
+    rg_result result = make_anew(grid, scene, index_of(scene, grid), &config, why);
     rgi_fail_quietly(false);
     /* Without memory it goes on as it is; a new frame that fits no better is not asked for soon again. */
-    store->next_look = LOOK_AFTER + store->count;
-    if (!result) store->unbounded_at = store->lattice.unbounded_count;
+    grid->next_look = LOOK_AFTER + grid->count;
+    if (!result) grid->unbounded_at = grid->lattice.unbounded_count;
 }
 
-uint32_t rgi_any_grid_uses(const rgi_any_grid *store) {
+uint32_t rgi_any_grid_uses(const rgi_any_grid *grid) {
     uint32_t uses = 0;
-    if (rgi_any_grid_is_loose(store)) {
-        if (store->lattice.boxes) uses |= RG_WITHOUT_BOXES;
-        if (store->lattice.unbounded_count) uses |= RG_WITHOUT_UNBOUNDED;
+    if (rgi_any_grid_is_loose(grid)) {
+        if (grid->lattice.boxes) uses |= RG_WITHOUT_BOXES;
+        if (grid->lattice.unbounded_count) uses |= RG_WITHOUT_UNBOUNDED;
         return uses;
     }
     rg_grid_report report;
-    rgi_grid_report(&store->cells, &report);
+    rgi_grid_report(&grid->cells, &report);
     uses |= RG_WITHOUT_BOXES;
     if (report.unbounded) uses |= RG_WITHOUT_UNBOUNDED;
     if (report.tiles > 1) uses |= RG_WITHOUT_TILES;
@@ -269,18 +269,18 @@ static void hold_unbounded(const rgi_any_grid *grid, const rg_scene *scene, doub
     }
 }
 
-void rgi_any_grid_report(const rgi_any_grid *store, const rg_scene *scene, rg_grid_report *report) {
-    if (!rgi_any_grid_is_loose(store)) {
-        rgi_grid_report(&store->cells, report);
+void rgi_any_grid_report(const rgi_any_grid *grid, const rg_scene *scene, rg_grid_report *report) {
+    if (!rgi_any_grid_is_loose(grid)) {
+        rgi_grid_report(&grid->cells, report);
         return;
     }
     memset(report, 0, sizeof *report);
     report->kind = RG_GRID_LOOSE;
-    rgi_lattice_box(&store->lattice, report->logical_lo, report->logical_hi);
-    hold_unbounded(store, scene, report->logical_lo, report->logical_hi);
-    report->objects = store->count;
-    report->entries = store->lattice.count;
-    report->unbounded = store->lattice.unbounded_count;
-    report->levels = rgi_lattice_levels(&store->lattice);
-    report->rebuilds = store->rebuilds;
+    rgi_lattice_box(&grid->lattice, report->logical_lo, report->logical_hi);
+    hold_unbounded(grid, scene, report->logical_lo, report->logical_hi);
+    report->objects = grid->count;
+    report->entries = grid->lattice.count;
+    report->unbounded = grid->lattice.unbounded_count;
+    report->levels = rgi_lattice_levels(&grid->lattice);
+    report->rebuilds = grid->rebuilds;
 }

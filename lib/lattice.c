@@ -12,7 +12,7 @@ enum {
     /* A node whose objects, all in leaves, have become so few is made a leaf again. */
     FEW = 8,
     /* Chains of more blocks are not looked through any more to be parted. */
-    LONG_TO_PART = 64,
+    LONG_TO_PART = 64
 };
 
 /* Puts a node between `parent` and the node there, with a cell that also covers the entry. False: it can't be. */

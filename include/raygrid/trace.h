@@ -21,6 +21,7 @@
  * surface is curved. docs/numerics.md has more.
  *
  * Thread rule: any number of threads at once, also while others change the scene. Nothing is allocated.
+ * A call takes up to 128 KB of the calling thread's stack.
  */
 #ifndef RAYGRID_TRACE_H
 #define RAYGRID_TRACE_H

@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* Builds with sanitizers take fewer. */
-enum { OBJECTS = 1500, LONE_ROUNDS = SHORT_TESTS ? 12 : 25, BATCHES = SHORT_TESTS ? 50 : 90 };
+enum { OBJECTS = 1500, LONE_ROUNDS = SHORT_TESTS ? 10 : 20, BATCHES = SHORT_TESTS ? 40 : 60 };
 
 /* ------------------------------------------------------------------------------------------------------ rays */
 
