@@ -363,6 +363,37 @@ START_TEST(what_is_left_out) {
 }
 END_TEST
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+static void *trace_calls_of_all_sizes(void *hits) {
+    static rg_ray rays[600];
+    for (int i = 0; i < 600; i++) {
+        const double from[3] = {0.5, 0.5, -2}, along[3] = {0.001 * i - 0.3, i % 2 ? 0.1 : unit_random() - 0.5, 1};
+        rays[i] = rg_ray_from(from, along);
+    }
+    for (uint64_t count = 1; count <= 600; count *= 8)
+        ck_assert_int_eq(rg_scene_trace(scene, rays, hits, count), RG_OK);
+    return hits;
+}
+
+/* What raygrid/trace.h says of the stack; sanitizers take more. */
+START_TEST(a_trace_fits_on_a_small_stack) {
+    static rg_hit hits[600];
+    pthread_attr_t attributes;
+    pthread_t thread;
+    for (int i = 0; i < 400; i++) {
+        rg_pose pose = rg_pose_at(unit_random(), unit_random(), unit_random());
+        pose.scale = 0.05;
+        ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, NULL), RG_OK);
+    }
+    pthread_attr_init(&attributes);
+    ck_assert_int_eq(pthread_attr_setstacksize(&attributes, 128 * 1024), 0);
+    ck_assert_int_eq(pthread_create(&thread, &attributes, trace_calls_of_all_sizes, hits), 0);
+    ck_assert_int_eq(pthread_join(thread, NULL), 0);
+    pthread_attr_destroy(&attributes);
+}
+END_TEST
+#endif
+
 /* A hint changes no answer; a value that is none is refused. */
 START_TEST(coherence_is_a_hint) {
     enum { RAYS = 320 };
@@ -601,6 +632,9 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, scales);
     tcase_add_test(tests, what_is_left_out);
     tcase_add_test(tests, coherence_is_a_hint);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    tcase_add_test(tests, a_trace_fits_on_a_small_stack);
+#endif
     tcase_add_test(tests, moves_keep_what_is_not_given);
     tcase_add_test(tests, no_ray_hits_where_it_starts);
     suite_add_tcase(suite, tests);
