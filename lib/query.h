@@ -12,7 +12,7 @@ enum { RGI_POSITION = 1, RGI_NORMAL = 2, RGI_OFFSET = 4, RGI_ALL = 7 };
 
 /** A call: its views, and what has become of it so far. */
 typedef struct rgi_call {
-    const rg_scene *scene;
+    rg_scene *scene;
     rg_trace_config config;
     rg_ray_views rays;
     rg_hit_views hits;  /* closest hit by views */

@@ -6,6 +6,7 @@
 
 #include <stddef.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { MAX_WORKERS = 1024, CONFIG_LEAST = sizeof(rg_scene_config), REPORT_LEAST = offsetof(rg_scene_report, isa) };
@@ -21,26 +22,26 @@ bool rgi_scene_inside(const rg_scene *scene) {
     return false;
 }
 
-void rgi_frame_push(rgi_frame *frame, const rg_scene *scene) {
+static void push(rgi_frame *frame, const rg_scene *scene) {
     frame->scene = scene;
     frame->outer = innermost;
     frame->locked = false;
     innermost = frame;
 }
 
-void rgi_frame_pop(rgi_frame *frame) {
+static void pop(rgi_frame *frame) {
     innermost = frame->outer;
 }
 
 void rgi_scene_begin_read(rg_scene *scene, rgi_frame *frame) {
     bool inside = innermost && rgi_scene_inside(scene);
     if (!inside) rgi_lock_read(&scene->lock);
-    rgi_frame_push(frame, scene);
+    push(frame, scene);
     frame->locked = !inside;
 }
 
 void rgi_scene_end_read(rg_scene *scene, rgi_frame *frame) {
-    rgi_frame_pop(frame);
+    pop(frame);
     if (frame->locked) rgi_lock_leave_read(&scene->lock);
 }
 
@@ -49,12 +50,12 @@ rg_result rgi_scene_begin_change(rg_scene *scene, rgi_frame *frame) {
     if (innermost && rgi_scene_inside(scene))
         return rgi_fail(RG_BUSY, "a scene can't be changed from inside a callback of its own");
     rgi_lock_write(&scene->lock);
-    rgi_frame_push(frame, scene);
+    push(frame, scene);
     return RG_OK;
 }
 
 rg_result rgi_scene_end_change(rg_scene *scene, rgi_frame *frame, rg_result result) {
-    rgi_frame_pop(frame);
+    pop(frame);
     rgi_lock_leave_write(&scene->lock);
     return result;
 }
@@ -124,12 +125,25 @@ rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
     return RG_OK;
 }
 
+/* Waits for calls that began before: those that wait for the lock, and traces between two groups of rays. */
+static void wait_for_calls(rg_scene *scene) {
+    const struct timespec briefly = {0, 50000};
+    rgi_lock_write(&scene->lock);
+    while (rgi_lock_has_waiting(&scene->lock) || __atomic_load_n(&scene->running, __ATOMIC_ACQUIRE)) {
+        rgi_lock_leave_write(&scene->lock);
+        nanosleep(&briefly, NULL);
+        rgi_lock_write(&scene->lock);
+    }
+    rgi_lock_leave_write(&scene->lock);
+}
+
 rg_result rg_scene_destroy(rg_scene **pointer) {
     if (!pointer || !*pointer) return RG_OK;
     if (rgi_scene_inside(*pointer))
         return rgi_fail(RG_BUSY, "a scene can't be destroyed from inside a callback of its own");
     rg_scene *scene = *pointer;
     *pointer = NULL;
+    wait_for_calls(scene);
     scene_free(scene);
     return RG_OK;
 }

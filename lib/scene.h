@@ -38,6 +38,7 @@ struct rg_scene {
     uint32_t grid_count;
     bool masked;           /* there has been an object that some rays do not see */
     uint64_t invalid_rays; /* atomic */
+    uint32_t running;      /* atomic: traces under way that let changes in between their rays */
 };
 
 /* ------------------------------------------------------------------------------------------------ the lock */
@@ -51,10 +52,6 @@ typedef struct rgi_frame {
 } rgi_frame;
 
 bool rgi_scene_inside(const rg_scene *scene);
-
-/** Notes that this thread works for a trace whose caller holds the lock. */
-void rgi_frame_push(rgi_frame *frame, const rg_scene *scene);
-void rgi_frame_pop(rgi_frame *frame);
 
 /** Begins reading: waits for changes to end, unless this thread is inside a callback of the scene. */
 void rgi_scene_begin_read(rg_scene *scene, rgi_frame *frame);

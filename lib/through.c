@@ -386,11 +386,12 @@ static void through_one(rgi_call *c, uint64_t first, uint64_t last, uint64_t *in
     finish(&g, invalid, failed);
 }
 
-static void through_many(rgi_call *c, uint64_t first, uint64_t last, uint64_t *invalid, bool *failed) {
+static uint64_t through_many(rgi_call *c, uint64_t first, uint64_t last, bool may_stop, uint64_t *invalid,
+                             bool *failed) {
     group one, other;
     init(&one, c, last - first);
     init(&other, c, last - first);
-    while (first < last) {
+    do {
         first = next_rays(&one, first, last);
         other.together = false;
         other.count = 0;
@@ -398,16 +399,20 @@ static void through_many(rgi_call *c, uint64_t first, uint64_t last, uint64_t *i
         trace_together(&one, &other);
         finish(&one, invalid, failed);
         finish(&other, invalid, failed);
-    }
+    } while (first < last && !(may_stop && rgi_lock_is_wanted(&c->scene->lock)));
+    return first;
 }
 
-void rgi_through(rgi_call *c, uint64_t first, uint64_t last) {
+uint64_t rgi_through(rgi_call *c, uint64_t first, uint64_t last, bool may_stop) {
     uint64_t invalid = 0;
     bool failed = false;
-    if (last - first <= RGI_PACKET)
+    if (last - first <= RGI_PACKET) {
         through_one(c, first, last, &invalid, &failed);
-    else
-        through_many(c, first, last, &invalid, &failed);
+        first = last;
+    } else {
+        first = through_many(c, first, last, may_stop, &invalid, &failed);
+    }
     if (invalid) __atomic_fetch_add(&c->invalid, invalid, __ATOMIC_RELAXED);
     if (failed) __atomic_store_n(&c->failed, 1, __ATOMIC_RELAXED);
+    return first;
 }

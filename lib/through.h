@@ -6,8 +6,9 @@
 
 /**
  * Takes the rays `first` to `last` - 1 of a call through all grids, 16 at a time, and writes what is wanted of them.
- * Rays that go the same way go together; others side by side; what is extreme or invalid on its own.
+ * Rays that go the same way go together; others side by side; what is extreme or invalid on its own. Returns the
+ * first ray that is left: `last`, or, if it `may_stop` because a change of the scene waits, one after a group of 16.
  */
-void rgi_through(rgi_call *call, uint64_t first, uint64_t last);
+uint64_t rgi_through(rgi_call *call, uint64_t first, uint64_t last, bool may_stop);
 
 #endif

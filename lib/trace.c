@@ -20,29 +20,44 @@ enum {
 
 /* ------------------------------------------------------------------------------------------------ many rays */
 
+/*
+ * Between two groups of rays a change that waits is let in. So no change waits longer than a group takes; each ray
+ * sees the scene at one instant, the rays of a long call not all the same. Not from inside a callback: the trace
+ * around it holds the scene.
+ */
+static void trace_range(rgi_call *c, uint64_t first, uint64_t last) {
+    rgi_frame frame;
+    while (first < last) {
+        rgi_scene_begin_read(c->scene, &frame);
+        first = rgi_through(c, first, last, frame.locked);
+        rgi_scene_end_read(c->scene, &frame);
+    }
+}
+
 /* Runs on a worker, or on a thread of the host's: callbacks are told apart there too. */
 static void trace_tile(void *context, uint64_t index) {
     rgi_call *c = context;
-    rgi_frame frame;
     uint64_t first = index * RAYS_PER_TILE, last = first + RAYS_PER_TILE;
-    rgi_frame_push(&frame, c->scene);
-    rgi_through(c, first, last < c->count ? last : c->count);
-    rgi_frame_pop(&frame);
+    trace_range(c, first, last < c->count ? last : c->count);
+}
+
+static void trace_all(rg_scene *scene, rgi_call *c) {
+    /* From inside a callback the workers may all be waiting for this very thread. */
+    if (c->count < 2 * RAYS_PER_TILE || rgi_scene_inside(scene))
+        trace_range(c, 0, c->count);
+    else
+        rgi_pool_run(scene->pool, (c->count + RAYS_PER_TILE - 1) / RAYS_PER_TILE, trace_tile, c);
 }
 
 static rg_result run(rg_scene *scene, rgi_call *c) {
-    rgi_frame frame;
     c->scene = scene;
-    bool nested = rgi_scene_inside(scene);
-    rgi_scene_begin_read(scene, &frame);
-    /* From inside a callback the workers may all be waiting for this very thread. */
-    if (nested || c->count < 2 * RAYS_PER_TILE)
-        rgi_through(c, 0, c->count);
-    else
-        rgi_pool_run(scene->pool, (c->count + RAYS_PER_TILE - 1) / RAYS_PER_TILE, trace_tile, c);
-    rgi_scene_end_read(scene, &frame);
+    /* Small calls hold the lock from their begin to their end, which tells the same. */
+    bool counted = c->count > RGI_PACKET;
+    if (counted) __atomic_fetch_add(&scene->running, 1, __ATOMIC_ACQUIRE);
+    trace_all(scene, c);
     if (c->invalid) __atomic_fetch_add(&scene->invalid_rays, c->invalid, __ATOMIC_RELAXED);
     if (c->config.invalid) *c->config.invalid = c->invalid;
+    if (counted) __atomic_fetch_sub(&scene->running, 1, __ATOMIC_RELEASE);
     return c->failed ? rgi_fail(RG_CALLBACK_FAILED, "a callback of the host failed during the trace") : RG_OK;
 }
 

@@ -2,11 +2,13 @@
 /*
  * raygrid/scene.h: scenes, their objects and their grids.
  *
- * Thread rule: a scene may be used by any number of threads at once. Calls that change it wait for running traces to
- * end and are seen whole or not at all; a trace that starts after such a call returned sees its effect. There is no
- * commit and no step. From inside a callback (user-defined shape or filter) the scene being traced may be traced and
- * read; calls that would change it return RG_BUSY. A callback may trace other scenes too, as long as no callback of
- * those traces this one: each trace holds its scene against changes while it runs.
+ * Thread rule: a scene may be used by any number of threads at once. Changes are seen whole or not at all; a trace
+ * that starts after such a call returned sees its effect. There is no commit and no step. A change does not wait for
+ * a trace to end, only for the rays under way on each thread, some 32: so of a trace that overlaps with changes, rays
+ * 16 * k to 16 * k + 15 see the scene at one instant, later ones maybe at a later one; a call of up to 16 rays sees
+ * one. From inside a callback (user-defined shape or filter) the scene being traced may be traced and read; calls
+ * that would change it return RG_BUSY. A callback may trace other scenes too, as long as no callback of those traces
+ * this one: rays hold their scene against changes while they are under way.
  */
 #ifndef RAYGRID_SCENE_H
 #define RAYGRID_SCENE_H
@@ -71,8 +73,8 @@ RG_API rg_result rg_scene_config_default(rg_scene_config *config, size_t size);
 RG_API rg_result rg_scene_create(const rg_scene_config *config, rg_scene **scene);
 
 /**
- * Ends the scene, its workers, and its objects' references to their shapes; sets the pointer to NULL. No other call
- * on the scene may be running or follow. NULL, or a pointer to NULL, is ignored and RG_OK.
+ * Ends the scene, its workers, and its objects' references to their shapes; sets the pointer to NULL. Waits for calls
+ * that other threads have begun on it; none may follow. NULL, or a pointer to NULL, is ignored and RG_OK.
  * RG_BUSY: called from inside a callback of this scene; the scene lives on.
  */
 RG_API rg_result rg_scene_destroy(rg_scene **scene);
