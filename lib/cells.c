@@ -63,9 +63,12 @@ rg_result rgi_cells_make(rgi_cells *cells, rgi_memory *memory, bool hierarchical
         rgi_cells_init(cells, memory);
         return result;
     }
-    memset(cells->heads, 0xff, (size_t)cell_count * sizeof *cells->heads);
     cells->cell_count = (uint32_t)cell_count;
     return RG_OK;
+}
+
+void rgi_cells_clear(rgi_cells *cells, uint32_t first, uint32_t count) {
+    if (count) memset(cells->heads + first, 0xff, (size_t)count * sizeof *cells->heads);
 }
 
 /* --------------------------------------------------------------------------------------------- placements */

@@ -82,12 +82,15 @@ static inline double rgi_tile_base(const rgi_cells *cells, int axis, double tile
 void rgi_cells_init(rgi_cells *cells, rgi_memory *memory);
 
 /**
- * Cells over the box from base, `count` of them along each axis at the finest level (for the hierarchical kind powers
- * of two, and coarser levels up to one cell). RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED; *cells is then as after
- * rgi_cells_init.
+ * Cells, not cleared, over the box from base, `count` of them along each axis at the finest level (for the
+ * hierarchical kind powers of two, and coarser levels up to one cell). RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED; *cells is
+ * then as after rgi_cells_init.
  */
 rg_result rgi_cells_make(rgi_cells *cells, rgi_memory *memory, bool hierarchical, const double base[3],
                          const double extent[3], const uint32_t count[3]);
+
+/** Makes cells empty: all of them, once, before anything is stored. */
+void rgi_cells_clear(rgi_cells *cells, uint32_t first, uint32_t count);
 void rgi_cells_free(rgi_cells *cells);
 
 /** Where a box belongs. */

@@ -9,8 +9,8 @@ void rgi_chunks_init(rgi_chunks *chunks, rgi_memory *memory, uint32_t bytes) {
     chunks->bytes = bytes;
 }
 
-/* Huge pages of the slab that begins with chunk `first`: an eighth of what there is already, so that little of them is
- * empty; none as long as that is not a whole one. */
+/* Huge pages of the slab that begins with chunk `first`: an eighth of what there is already, so that little of them
+ * is empty; none as long as that is not a whole one. */
 static uint32_t slab_pages(const rgi_chunks *chunks, uint32_t first) {
     uint64_t filled = (uint64_t)first * chunks->bytes / RGI_HUGE_PAGE;
     return filled < 128 ? (uint32_t)(filled / 8) : 16;
@@ -25,9 +25,17 @@ static uint32_t slab_length(const rgi_chunks *chunks, uint32_t first) {
     return (uint32_t)((slab_bytes(chunks, first) - RGI_SLACK) / chunks->bytes);
 }
 
-void rgi_chunks_free(rgi_chunks *chunks) {
-    for (uint32_t first = 0; first < chunks->count; first += slab_length(chunks, first))
+bool rgi_chunks_free_some(rgi_chunks *chunks, uint32_t blocks) {
+    for (; blocks && chunks->freed < chunks->count; blocks--) {
+        uint32_t first = chunks->freed;
         rgi_release(chunks->memory, chunks->at[first], 1, slab_bytes(chunks, first));
+        chunks->freed += slab_length(chunks, first);
+    }
+    return chunks->freed < chunks->count;
+}
+
+void rgi_chunks_free(rgi_chunks *chunks) {
+    (void)rgi_chunks_free_some(chunks, UINT32_MAX);
     rgi_release(chunks->memory, chunks->at, chunks->room, sizeof *chunks->at);
     rgi_chunks_init(chunks, chunks->memory, chunks->bytes);
 }
@@ -39,9 +47,11 @@ static rg_result make_room_for_pointer(rgi_chunks *chunks, const char *purpose) 
     rg_result result = rgi_allocate(chunks->memory, room, sizeof *at, purpose, &at);
     if (result) return result;
     if (chunks->count) memcpy(at, chunks->at, chunks->count * sizeof *at);
-    rgi_release(chunks->memory, chunks->at, chunks->room, sizeof *at);
+    char **old = chunks->at;
+    uint32_t old_room = chunks->room;
     chunks->at = at;
     chunks->room = room;
+    rgi_release(chunks->memory, old, old_room, sizeof *old);
     return RG_OK;
 }
 

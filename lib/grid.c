@@ -23,8 +23,12 @@ enum {
     SHRINKAGE = 16,
     /* An automatic resolution stops here: 128 MB of cells. */
     MAX_AUTOMATIC_CELLS = 1 << 25,
-    /* A member of a uniform grid of automatic resolution is in so many cells on average at the most. */
-    ENTRIES_PER_MEMBER = 64
+    /* A member of a uniform grid of automatic resolution is in so many cells on average at the most. It is judged by
+     * so many members. */
+    ENTRIES_PER_MEMBER = 64,
+    SAMPLE = 4096,
+    /* Members that each change looks at to make the logical box exact. */
+    SWEEP = 2
 };
 
 /* ------------------------------------------------------------------------------------------ configuration */
@@ -93,6 +97,15 @@ rg_result rgi_grid_config_read(rg_grid_config *config, const rg_grid_config *giv
 
 /* ---------------------------------------------------------------------------------------- making the cells */
 
+static void tell(const rgi_grid *grid, const char *what, const char *why) {
+    char line[160];
+    if (!grid->log) return;
+    snprintf(line, sizeof line, "grid %s (%s): %" PRIu64 " objects, %" PRIu32 " x %" PRIu32 " x %" PRIu32 " cells",
+             what, why, grid->member_count, grid->cells.levels[0].count[0], grid->cells.levels[0].count[1],
+             grid->cells.levels[0].count[2]);
+    grid->log(grid->log_user, line);
+}
+
 /* The side of cubic cells so that so many fit in the box; sides of the box that are no longer than a cell do not
  * count. */
 static double automatic_size(const double sides[3], double wanted) {
@@ -143,15 +156,15 @@ static void fitting_box(const double lo[3], const double hi[3], double base[3], 
     }
 }
 
-static bool make_box(const rgi_grid *grid, const rg_grid_config *config, bool given, double base[3],
+static bool make_box(const rg_grid_config *config, bool given, const double lo[3], const double hi[3], double base[3],
                      double extent[3]) {
     if (given) {
         rgi_copy(config->lo, base);
         rgi_sub(config->hi, config->lo, extent);
         return true;
     }
-    if (!(grid->lo[0] <= grid->hi[0])) return false;
-    fitting_box(grid->lo, grid->hi, base, extent);
+    if (!(lo[0] <= hi[0])) return false;
+    fitting_box(lo, hi, base, extent);
     return true;
 }
 
@@ -161,23 +174,28 @@ static bool is_finite(const double lo[3], const double hi[3]) {
 
 /* Whether the members would be in too many cells of a uniform grid. */
 static bool too_fine(const rgi_grid *grid, const double extent[3], const uint32_t count[3]) {
-    double entries = 0;
-    for (uint32_t i = 0; i < grid->members.used; i++) {
+    double entries = 0, seen = 0;
+    uint32_t step = grid->members.used / SAMPLE + 1;
+    for (uint32_t i = 0; i < grid->members.used; i += step) {
         const rgi_member *m = rgi_grid_member(grid, i);
         double own = 1;
-        if (!m->alive || !is_finite(m->lo, m->hi)) continue;
+        if (!m->alive) continue;
+        seen++;
+        if (!is_finite(m->lo, m->hi)) continue;
         for (int a = 0; a < 3; a++) own *= 1 + (m->hi[a] - m->lo[a]) * (count[a] / extent[a]);
         entries += own;
     }
-    return entries > (double)ENTRIES_PER_MEMBER * (double)grid->member_count;
+    return entries > ENTRIES_PER_MEMBER * seen;
 }
 
-/* Makes empty cells for the members that the grid has. `given`: with the box of the configuration. */
-static rg_result make_cells(const rgi_grid *grid, const rg_grid_config *config, bool given, rgi_cells *cells) {
+/* Makes cells, not cleared, for the members that the grid has. `given`: with the box of the configuration, else with
+ * one around lo to hi. */
+static rg_result make_cells(const rgi_grid *grid, const rg_grid_config *config, bool given, const double lo[3],
+                            const double hi[3], rgi_cells *cells) {
     double base[3], extent[3];
     uint32_t count[3];
     rgi_cells_init(cells, grid->memory);
-    if (!make_box(grid, config, given, base, extent)) return RG_OK;
+    if (!make_box(config, given, lo, hi, base, extent)) return RG_OK;
     if (config->resolution) {
         uint32_t resolution = config->resolution;
         do {
@@ -220,20 +238,48 @@ static rg_result fill_cells(rgi_grid *grid, rgi_cells *cells) {
     return RG_OK;
 }
 
-/* Makes the logical box exact again. */
-static void tighten(rgi_grid *grid) {
-    rgi_empty_box(grid->lo, grid->hi);
-    for (uint32_t i = 0; i < grid->members.used; i++) {
-        const rgi_member *m = rgi_grid_member(grid, i);
-        if (m->alive && is_finite(m->lo, m->hi)) rgi_grow(grid->lo, grid->hi, m->lo, m->hi);
+bool rgi_grid_survey(const rgi_grid *grid, uint32_t *member, uint32_t count, double lo[3], double hi[3]) {
+    for (; count && *member < grid->members.used; count--, ++*member) {
+        const rgi_member *m = rgi_grid_member(grid, *member);
+        if (m->alive && is_finite(m->lo, m->hi)) rgi_grow(lo, hi, m->lo, m->hi);
     }
-    grid->changes = 0;
+    return *member == grid->members.used;
+}
+
+static void begin_sweep(rgi_grid *grid) {
+    grid->sweep = 0;
+    rgi_empty_box(grid->sweep_lo, grid->sweep_hi);
+}
+
+/* A step of the sweep. */
+static void sweep(rgi_grid *grid, uint32_t count) {
+    if (!rgi_grid_survey(grid, &grid->sweep, count, grid->sweep_lo, grid->sweep_hi)) return;
+    rgi_copy(grid->sweep_lo, grid->lo);
+    rgi_copy(grid->sweep_hi, grid->hi);
+    grid->swept = true;
+    begin_sweep(grid);
+}
+
+/* Makes the logical box exact. */
+static void tighten(rgi_grid *grid) {
+    begin_sweep(grid);
+    sweep(grid, UINT32_MAX);
+}
+
+/* Cells are made, for so many members. */
+static void note_cells(rgi_grid *grid, bool given, uint64_t members) {
+    const double origin[3] = {0, 0, 0};
+    grid->box_given = given;
+    grid->built_count = members;
+    grid->grown = grid->swept = false;
+    grid->physical = rgi_diagonal(origin, grid->cells.extent);
 }
 
 static rg_result rebuild(rgi_grid *grid, const rg_grid_config *config, bool given) {
     rgi_cells cells;
     tighten(grid);
-    rg_result result = make_cells(grid, config, given, &cells);
+    rg_result result = make_cells(grid, config, given, grid->lo, grid->hi, &cells);
+    if (!result) rgi_cells_clear(&cells, 0, cells.cell_count);
     if (!result) result = fill_cells(grid, &cells);
     if (result) {
         rgi_cells_free(&cells);
@@ -241,25 +287,41 @@ static rg_result rebuild(rgi_grid *grid, const rg_grid_config *config, bool give
     }
     rgi_cells_free(&grid->cells);
     grid->cells = cells;
-    grid->box_given = given;
-    grid->built_count = grid->member_count;
-    grid->grown = false;
-    double origin[3] = {0, 0, 0};
-    grid->physical = rgi_diagonal(origin, cells.extent);
+    note_cells(grid, given, grid->member_count);
     return RG_OK;
+}
+
+/* Without cells. */
+static void begin(rgi_grid *grid, rgi_memory *memory, const rg_grid_config *config, rg_log log, void *log_user) {
+    memset(grid, 0, sizeof *grid);
+    grid->memory = memory;
+    grid->config = *config;
+    grid->log = log;
+    grid->log_user = log_user;
+    rgi_empty_box(grid->lo, grid->hi);
+    begin_sweep(grid);
+    rgi_cells_init(&grid->cells, memory);
+    rgi_slots_init(&grid->members, memory, sizeof(rgi_member), "members of a grid");
+}
+
+rg_result rgi_grid_plan(rgi_grid *grid, const rgi_grid *old, const rgi_grid_rule *rule, const double lo[3],
+                        const double hi[3]) {
+    begin(grid, old->memory, &old->config, old->log, old->log_user);
+    return make_cells(old, &old->config, rule->given, lo, hi, &grid->cells);
+}
+
+void rgi_grid_built(rgi_grid *grid, const rgi_grid *old, const rgi_grid_rule *rule) {
+    bool first = !old->cells.level_count;
+    note_cells(grid, rule->given, grid->member_count);
+    grid->rebuilds = old->rebuilds + !first;
+    tell(grid, first ? "built" : "rebuilt", rule->why);
 }
 
 /* ------------------------------------------------------------------------------------------------- lifetime */
 
 rg_result rgi_grid_init(rgi_grid *grid, rgi_memory *memory, const rg_grid_config *config, rg_log log,
                         void *log_user) {
-    memset(grid, 0, sizeof *grid);
-    grid->memory = memory;
-    grid->config = *config;
-    grid->log = log;
-    grid->log_user = log_user;
-    rgi_cells_init(&grid->cells, memory);
-    rgi_slots_init(&grid->members, memory, sizeof(rgi_member), "members of a grid");
+    begin(grid, memory, config, log, log_user);
     return rebuild(grid, config, has_box(config));
 }
 
@@ -296,12 +358,16 @@ rg_result rgi_grid_reserve(rgi_grid *grid, const rgi_grid_need *need) {
 
 /* The logical box takes a box in. */
 static void hold(rgi_grid *grid, const double lo[3], const double hi[3]) {
-    grid->changes++;
     bool inside = true;
-    for (int a = 0; a < 3; a++) inside &= lo[a] >= grid->lo[a] && hi[a] <= grid->hi[a];
-    if (inside || !is_finite(lo, hi)) return;
-    rgi_grow(grid->lo, grid->hi, lo, hi);
-    grid->grown = true;
+    if (is_finite(lo, hi)) {
+        for (int a = 0; a < 3; a++) inside &= lo[a] >= grid->lo[a] && hi[a] <= grid->hi[a];
+        rgi_grow(grid->sweep_lo, grid->sweep_hi, lo, hi);
+    }
+    if (!inside) {
+        rgi_grow(grid->lo, grid->hi, lo, hi);
+        grid->grown = true;
+    }
+    sweep(grid, SWEEP);
 }
 
 rg_result rgi_grid_insert(rgi_grid *grid, uint32_t object, const double lo[3], const double hi[3], uint32_t *member) {
@@ -353,74 +419,79 @@ void rgi_grid_remove(rgi_grid *grid, uint32_t member) {
     m->alive = 0;
     rgi_slots_give(&grid->members, member);
     grid->member_count--;
-    grid->changes++;
+    sweep(grid, SWEEP);
 }
 
 /* -------------------------------------------------------------------------------------------------- the rules */
 
-static void tell(const rgi_grid *grid, const char *what, const char *why) {
-    char line[160];
-    if (!grid->log) return;
-    snprintf(line, sizeof line, "grid %s (%s): %" PRIu64 " objects, %" PRIu32 " x %" PRIu32 " x %" PRIu32 " cells",
-             what, why, grid->member_count, grid->cells.levels[0].count[0], grid->cells.levels[0].count[1],
-             grid->cells.levels[0].count[2]);
-    grid->log(grid->log_user, line);
+static rgi_grid_rule ruled(const char *why, bool given, bool outgrown) {
+    const rgi_grid_rule r = {why, given, outgrown};
+    return r;
 }
 
-/* Rebuilds by rule. Without memory the old cells go on; the next try comes when as much has changed again. */
-static void rebuild_by_rule(rgi_grid *grid, bool given, const char *why) {
+static rgi_grid_rule ask_count(const rgi_grid *grid) {
+    uint64_t now = grid->member_count, then = grid->built_count;
+    if (!grid->cells.level_count)
+        return ruled(now > FEW && grid->lo[0] <= grid->hi[0] ? "the first cells" : NULL, false, false);
+    if (grid->config.resolution) return ruled(NULL, false, false);
+    if (now > GROWTH * then + FEW) return ruled("more objects", grid->box_given, false);
+    if (now * SHRINKAGE + FEW < then) return ruled("fewer objects", grid->box_given, false);
+    return ruled(NULL, false, false);
+}
+
+/* The logical box is exact at the end of a sweep; if it then is far smaller than the physical box, that is made anew.
+ */
+static rgi_grid_rule ask_box(rgi_grid *grid) {
+    double factor = grid->config.rebuild_factor;
+    bool swept = grid->swept, grown = grid->grown;
+    grid->swept = grid->grown = false;
+    if (!swept && !grown) return ruled(NULL, false, false);
+    double diagonal = rgi_diagonal(grid->lo, grid->hi);
+    if (diagonal > factor * grid->physical) return ruled("the logical box outgrew the physical one", false, true);
+    if (swept && !grid->box_given && diagonal * 2 * factor < grid->physical)
+        return ruled("the objects drew together", false, false);
+    return ruled(NULL, false, false);
+}
+
+rgi_grid_rule rgi_grid_ask(rgi_grid *grid) {
+    if (grid->retry_in) {
+        grid->retry_in--;
+        return ruled(NULL, false, false);
+    }
+    bool never = grid->config.rebuild_factor == RG_REBUILD_NEVER;
+    rgi_grid_rule r = ruled(NULL, false, false);
+    if (!never || !grid->cells.level_count) r = ask_count(grid);
+    if (!r.why && !never && grid->cells.level_count) r = ask_box(grid);
+    return r;
+}
+
+bool rgi_grid_holds(const rgi_grid *grid, const rgi_grid_rule *r, const double lo[3], const double hi[3]) {
+    return !r->outgrown || rgi_diagonal(lo, hi) > grid->config.rebuild_factor * grid->physical;
+}
+
+void rgi_grid_put_off(rgi_grid *grid, const char *why) {
+    grid->retry_in = grid->member_count / 2 + FEW;
+    if (why) tell(grid, "not rebuilt for want of memory", why);
+}
+
+void rgi_grid_obey(rgi_grid *grid, const rgi_grid_rule *r) {
     bool first = !grid->cells.level_count;
+    tighten(grid);
+    if (!rgi_grid_holds(grid, r, grid->lo, grid->hi)) return;
     rgi_fail_quietly(true);
-    rg_result result = rebuild(grid, &grid->config, given);
+    rg_result result = rebuild(grid, &grid->config, r->given);
     rgi_fail_quietly(false);
     if (result == RG_OK) {
         grid->rebuilds += !first;
-        tell(grid, first ? "built" : "rebuilt", why);
+        tell(grid, first ? "built" : "rebuilt", r->why);
     } else {
-        grid->retry_in = grid->member_count / 2 + FEW;
-        tell(grid, "not rebuilt for want of memory", why);
-    }
-}
-
-static void settle_count(rgi_grid *grid) {
-    uint64_t now = grid->member_count, then = grid->built_count;
-    if (!grid->cells.level_count) {
-        if (now > FEW && grid->lo[0] <= grid->hi[0]) rebuild_by_rule(grid, false, "the first cells");
-        return;
-    }
-    if (grid->config.resolution) return;
-    if (now > GROWTH * then + FEW) rebuild_by_rule(grid, grid->box_given, "more objects");
-    if (now * SHRINKAGE + FEW < then) rebuild_by_rule(grid, grid->box_given, "fewer objects");
-}
-
-/*
- * The logical box only grows as long as objects change. Once as many changes as there are members have been made,
- * making it exact costs less than they did; if it then turns out to be far smaller than the physical box, that is
- * made anew.
- */
-static void settle_box(rgi_grid *grid) {
-    double factor = grid->config.rebuild_factor;
-    bool tightened = grid->changes > 2 * grid->member_count + 1024;
-    if (tightened) tighten(grid);
-    if (!tightened && !grid->grown) return;
-    grid->grown = false;
-    if (rgi_diagonal(grid->lo, grid->hi) > factor * grid->physical) {
-        tighten(grid);
-        if (rgi_diagonal(grid->lo, grid->hi) > factor * grid->physical)
-            rebuild_by_rule(grid, false, "the logical box outgrew the physical one");
-    } else if (tightened && !grid->box_given && rgi_diagonal(grid->lo, grid->hi) * 2 * factor < grid->physical) {
-        rebuild_by_rule(grid, false, "the objects drew together");
+        rgi_grid_put_off(grid, r->why);
     }
 }
 
 void rgi_grid_settle(rgi_grid *grid) {
-    if (grid->retry_in) {
-        grid->retry_in--;
-        return;
-    }
-    bool never = grid->config.rebuild_factor == RG_REBUILD_NEVER;
-    if (!never || !grid->cells.level_count) settle_count(grid);
-    if (!never && grid->cells.level_count) settle_box(grid);
+    const rgi_grid_rule r = rgi_grid_ask(grid);
+    if (r.why) rgi_grid_obey(grid, &r);
 }
 
 rg_result rgi_grid_rebuild(rgi_grid *grid) {

@@ -30,11 +30,15 @@ typedef struct rgi_grid {
     uint64_t member_count;
     double lo[3], hi[3];  /* the logical box: holds all members but the infinite */
     uint64_t built_count; /* members when the cells were made */
-    uint64_t changes;     /* inserts, moves and removes since the logical box was last made exact */
-    double physical;      /* diagonal of the physical box */
-    bool box_given;       /* the physical box is that of the configuration */
-    bool grown;           /* the logical box has grown since the rules were last applied */
-    uint64_t retry_in;    /* changes until a rebuild that found no memory is tried again */
+    /* The logical box only grows. A sweep over the members, a few a change, makes another one that takes their
+     * changes in, too; at its end that is the logical box, and a new sweep begins. */
+    uint32_t sweep; /* members below have been looked at */
+    double sweep_lo[3], sweep_hi[3];
+    bool swept;        /* a sweep has ended since the rules were last applied */
+    double physical;   /* diagonal of the physical box */
+    bool box_given;    /* the physical box is that of the configuration */
+    bool grown;        /* the logical box has grown since the rules were last applied */
+    uint64_t retry_in; /* changes until a rebuild that found no memory is tried again */
     uint64_t rebuilds;
 } rgi_grid;
 
@@ -71,9 +75,46 @@ void rgi_grid_move_inside(rgi_grid *grid, uint32_t member, const double lo[3], c
 
 void rgi_grid_remove(rgi_grid *grid, uint32_t member);
 
-/** After changes: rebuilds if the rules ask for it. Without memory the old cells stay and serve; later it is tried
+/** That the rules ask for a rebuild. */
+typedef struct rgi_grid_rule {
+    const char *why; /* NULL: they do not */
+    bool given;      /* with the box of the configuration */
+    bool outgrown;   /* because of a logical box that may not be exact: with the exact one the rule may not hold */
+} rgi_grid_rule;
+
+/** After changes: what the rules ask for. Cost: constant. */
+rgi_grid_rule rgi_grid_ask(rgi_grid *grid);
+
+/** Rebuilds at once as a rule asks, if it still does. Without memory the old cells stay and serve; later it is tried
  * again. */
+void rgi_grid_obey(rgi_grid *grid, const rgi_grid_rule *rule);
+
+/** That a rebuild was not made; `why` it would have been, if there was no memory for it. The rules hold their peace
+ * for as many changes as half the members. */
+void rgi_grid_put_off(rgi_grid *grid, const char *why);
+
+/** Asks and obeys. */
 void rgi_grid_settle(rgi_grid *grid);
+
+/*
+ * The same in steps, each of bounded cost, into a new grid beside the old one, which stays as it is and may change in
+ * between. First the survey: a box around the members, a few at a time; then the plan; then the new cells are
+ * cleared, a few at a time; then the scene inserts its objects; last, rgi_grid_built.
+ */
+
+/** Takes members from *member on, up to `count` of them, into a box. Returns whether all have been. */
+bool rgi_grid_survey(const rgi_grid *grid, uint32_t *member, uint32_t count, double lo[3], double hi[3]);
+
+/** Whether a rule still holds for the exact logical box. */
+bool rgi_grid_holds(const rgi_grid *grid, const rgi_grid_rule *rule, const double lo[3], const double hi[3]);
+
+/** An empty grid, for the members of the old one, whose box is given; its cells are not cleared yet.
+ * RG_OUT_OF_MEMORY. */
+rg_result rgi_grid_plan(rgi_grid *grid, const rgi_grid *old, const rgi_grid_rule *rule, const double lo[3],
+                        const double hi[3]);
+
+/** That the new grid holds all members now and takes the place of the old one. */
+void rgi_grid_built(rgi_grid *grid, const rgi_grid *old, const rgi_grid_rule *rule);
 
 /** Rebuilds now, with a box that fits. RG_OUT_OF_MEMORY: nothing has changed. */
 rg_result rgi_grid_rebuild(rgi_grid *grid);

@@ -182,7 +182,8 @@ static rg_result insert_entry(rgi_lattice *lattice, const rgi_entry *e) {
 
 rg_result rgi_lattice_insert(rgi_lattice *lattice, uint32_t slot, const rgi_bound *bound) {
     rgi_entry e;
-    if (!lattice->root) rgi_lattice_make_frame(lattice, bound);
+    if (!lattice->root && !lattice->framed) rgi_lattice_make_frame(lattice, bound);
+    lattice->framed = false;
     lattice->boxes |= !bound->ball;
     if (!rgi_entry_make(lattice, slot, bound, &e)) return rgi_lattice_insert_unbounded(lattice, slot);
     return insert_entry(lattice, &e);
@@ -442,12 +443,13 @@ uint32_t rgi_lattice_levels(const rgi_lattice *lattice) {
 /* ------------------------------------------------------------------------------------------------ lifetime */
 
 void rgi_lattice_init(rgi_lattice *lattice, rgi_memory *memory, rgi_slots *objects, size_t place_offset,
-                      const struct rgi_kernels *kernels) {
+                      rgi_slots *places, const struct rgi_kernels *kernels) {
     memset(lattice, 0, sizeof *lattice);
     lattice->kernels = kernels;
     lattice->memory = memory;
     lattice->objects = objects;
-    lattice->place_offset = place_offset;
+    lattice->places = places ? places : objects;
+    lattice->place_offset = places ? 0 : place_offset;
     rgi_arena_init(&lattice->arena, memory);
     rgi_bounds_empty(lattice->lo, lattice->hi);
     lattice->scale = lattice->unit = 1;
@@ -456,4 +458,7 @@ void rgi_lattice_init(rgi_lattice *lattice, rgi_memory *memory, rgi_slots *objec
 void rgi_lattice_free(rgi_lattice *lattice) {
     rgi_arena_free(&lattice->arena);
     rgi_release(lattice->memory, lattice->unbounded, lattice->unbounded_room, sizeof *lattice->unbounded);
+    lattice->unbounded = NULL;
+    lattice->unbounded_count = 0;
+    lattice->unbounded_room = 0;
 }

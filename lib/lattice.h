@@ -120,21 +120,25 @@ void rgi_arena_give(rgi_arena *arena, uint32_t kind, rgi_ref ref);
 typedef struct rgi_lattice {
     rgi_memory *memory;
     const struct rgi_kernels *kernels;
-    rgi_slots *objects;  /* records that start with an rgi_location */
-    size_t place_offset; /* of the place in such a record */
+    const rgi_slots *objects; /* rgi_object, by slot: for kernels */
+    rgi_slots *places;        /* records that have an rgi_location, by slot */
+    size_t place_offset;      /* where such a record has it */
     rgi_arena arena;
     rgi_ref root;
     float lo[3], hi[3];            /* holds all that is below the root */
     double origin[3], scale, unit; /* powers of two: scale * unit = 1 */
     uint64_t count;                /* objects below the root */
     bool boxes;                    /* there have been others than balls */
+    bool framed;                   /* the frame was chosen: the first object does not make it */
     uint32_t *unbounded;           /* slots of what no float can hold */
     uint32_t unbounded_count;
     uint64_t unbounded_room;
 } rgi_lattice;
 
+/** An empty one. `places` is where each object's place is noted, an rgi_location a slot; NULL: in the objects'
+ * records, at an offset. */
 void rgi_lattice_init(rgi_lattice *lattice, rgi_memory *memory, rgi_slots *objects, size_t place_offset,
-                      const struct rgi_kernels *kernels);
+                      rgi_slots *places, const struct rgi_kernels *kernels);
 void rgi_lattice_free(rgi_lattice *lattice);
 
 /** Stores an object. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED: nothing has changed. Cost: constant, but for the depth. */
@@ -142,6 +146,13 @@ rg_result rgi_lattice_insert(rgi_lattice *lattice, uint32_t slot, const rgi_boun
 
 /** Gives the slot and the bounds of the i-th of many objects. */
 typedef void (*rgi_bound_source)(const void *context, uint64_t i, uint32_t *slot, rgi_bound *bound);
+
+/**
+ * Chooses the frame of an empty lattice by a sample of bounds, as rgi_lattice_build does. `old`, or NULL: a lattice
+ * that holds the objects; then the frame stays for those that are inserted.
+ */
+void rgi_lattice_choose_frame(rgi_lattice *lattice, rgi_bound_source source, const void *context, uint64_t count,
+                              const rgi_lattice *old);
 
 /**
  * Stores many objects in an empty lattice. On failure it is to be freed. RG_OUT_OF_MEMORY, RG_LIMIT_EXCEEDED. Cost:

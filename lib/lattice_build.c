@@ -22,7 +22,8 @@ static int compare(const void *a, const void *b) {
  * The frame: the unit is near the median of the objects' sizes and the origin at the median of their places, of a
  * sample. So a few that are far away, or of another order of magnitude, do not take the floats' bits from the others.
  */
-static void choose_frame(rgi_lattice *lattice, rgi_bound_source source, const void *context, uint64_t count) {
+void rgi_lattice_choose_frame(rgi_lattice *lattice, rgi_bound_source source, const void *context, uint64_t count,
+                              const rgi_lattice *old) {
     double values[4][SAMPLE];
     uint64_t samples = count < SAMPLE ? count : SAMPLE, kept = 0;
     for (uint64_t i = 0; i < samples; i++) {
@@ -48,7 +49,12 @@ static void choose_frame(rgi_lattice *lattice, rgi_bound_source source, const vo
             for (int a = 0; a < 3; a++) frame.hi[a] = median;
         }
     }
+    if (old && !kept) {
+        rgi_lattice_box(old, frame.lo, frame.hi);
+        for (int a = 0; a < 3; a++) frame.centre[a] = 0.5 * (frame.lo[a] + frame.hi[a]);
+    }
     rgi_lattice_make_frame(lattice, &frame);
+    lattice->framed = old != NULL;
 }
 
 /* Stores entries as a chain, whatever their number. */
@@ -129,7 +135,7 @@ rg_result rgi_lattice_build(rgi_lattice *lattice, rgi_bound_source source, const
     if (count == 0) return RG_OK;
     rg_result result = rgi_allocate(lattice->memory, 2 * count, sizeof *entries, "building a grid", &entries);
     if (result) return result;
-    choose_frame(lattice, source, context, count);
+    rgi_lattice_choose_frame(lattice, source, context, count, NULL);
     for (uint64_t i = 0; i < count && !result; i++) {
         rgi_bound bound;
         uint32_t slot;

@@ -115,7 +115,7 @@ void rgi_entry_write_bounds(rgi_block *b, uint32_t lane, const rgi_entry *e) {
 }
 
 rgi_location *rgi_lattice_place(const rgi_lattice *lattice, uint32_t slot) {
-    return (rgi_location *)((char *)rgi_slots_at(lattice->objects, slot) + lattice->place_offset);
+    return (rgi_location *)((char *)rgi_slots_at(lattice->places, slot) + lattice->place_offset);
 }
 
 void rgi_entry_write(const rgi_lattice *lattice, rgi_ref ref, uint32_t lane, const rgi_entry *e) {

@@ -5,8 +5,8 @@
 
 #include <pthread.h>
 #include <signal.h>
-#include <stdbool.h>
 #include <string.h>
+#include <unistd.h>
 
 /* A call that is being worked on, in the caller's stack. Workers that joined are counted under the pool's lock, so
  * the caller knows when the last has left and the job may vanish. */
@@ -25,7 +25,11 @@ struct rgi_pool {
     void *user;
     uint32_t workers;
     uint32_t started; /* threads that run */
+    pid_t process;    /* whose they are */
     bool ending;
+    rgi_spare_work spare_work;
+    void *spare_context;
+    bool has_spare_work, spare_taken;
     pthread_mutex_t lock;
     pthread_cond_t work; /* a job came, or the end */
     pthread_cond_t done; /* a worker left a job */
@@ -46,20 +50,44 @@ static bool has_work(const job *j) {
     return __atomic_load_n(&j->taken, __ATOMIC_RELAXED) < j->count;
 }
 
+/* With the lock held, but not while it works. */
+static void join(rgi_pool *pool, job *j) {
+    j->joined++;
+    pthread_mutex_unlock(&pool->lock);
+    work_on(j);
+    pthread_mutex_lock(&pool->lock);
+    if (--j->joined == 0) pthread_cond_broadcast(&pool->done);
+}
+
+static bool has_spare(const rgi_pool *pool) {
+    return pool->has_spare_work && !pool->spare_taken;
+}
+
+static void do_spare(rgi_pool *pool) {
+    pool->spare_taken = true;
+    pool->has_spare_work = false; /* another wake meanwhile is not lost */
+    pthread_mutex_unlock(&pool->lock);
+    bool more = pool->spare_work(pool->spare_context);
+    pthread_mutex_lock(&pool->lock);
+    pool->has_spare_work |= more;
+    pool->spare_taken = false;
+}
+
+/* Jobs first, but after each a part of the spare work: so that gets on under any load. */
 static void *worker(void *argument) {
     rgi_pool *pool = argument;
+    bool worked = false;
     pthread_mutex_lock(&pool->lock);
     for (;;) {
         job *j = pool->jobs;
         while (j && !has_work(j)) j = j->next;
-        if (j) {
-            j->joined++;
-            pthread_mutex_unlock(&pool->lock);
-            work_on(j);
-            pthread_mutex_lock(&pool->lock);
-            if (--j->joined == 0) pthread_cond_broadcast(&pool->done);
-        } else if (pool->ending) {
-            break;
+        if (pool->ending && !j) break;
+        if (has_spare(pool) && (!j || worked)) {
+            worked = false;
+            do_spare(pool);
+        } else if (j) {
+            worked = true;
+            join(pool, j);
         } else {
             pthread_cond_wait(&pool->work, &pool->lock);
         }
@@ -86,7 +114,12 @@ static void share(rgi_pool *pool, job *j) {
     pthread_mutex_unlock(&pool->lock);
 }
 
+/* In a child of the process that made them there are none, and what they held stays as it is. */
 static void end_threads(rgi_pool *pool) {
+    if (pool->process != getpid()) {
+        rgi_release(pool->memory, pool->threads, pool->workers, sizeof *pool->threads);
+        return;
+    }
     pthread_mutex_lock(&pool->lock);
     pool->ending = true;
     pthread_cond_broadcast(&pool->work);
@@ -116,12 +149,21 @@ static rg_result start_threads(rgi_pool *pool) {
 
 static rg_result make_threads(rgi_pool *pool, uint32_t workers) {
     pool->workers = workers;
+    pool->process = getpid();
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->work, NULL);
     pthread_cond_init(&pool->done, NULL);
     if (workers < 2) return RG_OK;
     rg_result result = rgi_allocate(pool->memory, workers, sizeof *pool->threads, "the workers", &pool->threads);
     return result ? result : start_threads(pool);
+}
+
+void rgi_pool_wake(rgi_pool *pool) {
+    if (!rgi_pool_has_threads(pool)) return;
+    pthread_mutex_lock(&pool->lock);
+    pool->has_spare_work = true;
+    pthread_cond_signal(&pool->work);
+    pthread_mutex_unlock(&pool->lock);
 }
 #else
 /* The calling thread works alone, however many were asked for. */
@@ -139,7 +181,20 @@ static rg_result make_threads(rgi_pool *pool, uint32_t workers) {
     pool->workers = 1;
     return RG_OK;
 }
+
+void rgi_pool_wake(rgi_pool *pool) {
+    (void)pool;
+}
 #endif
+
+bool rgi_pool_has_threads(const rgi_pool *pool) {
+    return pool->started && pool->process == getpid();
+}
+
+void rgi_pool_set_spare_work(rgi_pool *pool, rgi_spare_work work, void *context) {
+    pool->spare_work = work;
+    pool->spare_context = context;
+}
 
 void rgi_pool_run(rgi_pool *pool, uint64_t count, rgi_body body, void *context) {
     if (pool->parallel_for && count > 1) {
@@ -147,7 +202,7 @@ void rgi_pool_run(rgi_pool *pool, uint64_t count, rgi_body body, void *context) 
         return;
     }
     job j = {NULL, body, context, count, 0, 0};
-    if (pool->started == 0 || count < 2) {
+    if (count < 2 || !rgi_pool_has_threads(pool)) {
         work_on(&j);
         return;
     }

@@ -5,6 +5,8 @@
 
 #include "memory.h"
 
+#include <stdbool.h>
+
 typedef struct rgi_pool rgi_pool;
 
 typedef void (*rgi_body)(void *context, uint64_t index);
@@ -15,6 +17,20 @@ typedef void (*rgi_body)(void *context, uint64_t index);
  */
 rg_result rgi_pool_create(rgi_memory *memory, uint32_t workers, rg_parallel_for parallel_for, void *user,
                           rgi_pool **pool);
+
+/** What a worker does when there is nothing to run, once it was woken for it: a part of something long. Returns
+ * whether there is more. */
+typedef bool (*rgi_spare_work)(void *context);
+
+/** Sets it, before the pool is used. */
+void rgi_pool_set_spare_work(rgi_pool *pool, rgi_spare_work work, void *context);
+
+/** Tells the workers that there is some. It is worked on by one at a time, as soon as one is free; also between two
+ * runs. Does nothing without threads. */
+void rgi_pool_wake(rgi_pool *pool);
+
+/** Whether the pool has threads of its own. Not in the child of a fork: they are the parent's. */
+bool rgi_pool_has_threads(const rgi_pool *pool);
 
 /** Ends and joins the threads. */
 void rgi_pool_destroy(rgi_pool *pool);

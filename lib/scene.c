@@ -2,6 +2,7 @@
 #include "any_grid.h"
 
 #include "error.h"
+#include "rebuild.h"
 #include "struct_size.h"
 
 #include <stddef.h>
@@ -121,6 +122,7 @@ rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
         scene_free(scene);
         return result;
     }
+    rgi_pool_set_spare_work(scene->pool, rgi_rebuild_work, scene);
     *out = scene;
     return RG_OK;
 }

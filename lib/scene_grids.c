@@ -3,7 +3,9 @@
 #include "error.h"
 #include "struct_size.h"
 
-enum { REPORT_LEAST = sizeof(rg_grid_report), GENERATIONS = 1 << 24 };
+#include <stddef.h>
+
+enum { REPORT_LEAST = offsetof(rg_grid_report, rebuilding), GENERATIONS = 1 << 24 };
 
 rg_grid rgi_scene_grid_id(const rg_scene *scene, uint32_t index) {
     return scene->grids[index].generation << 8 | index;
@@ -29,7 +31,7 @@ rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint
     if (*index == RGI_GRIDS) return rgi_fail(RG_LIMIT_EXCEEDED, "a scene has %d grids at the most", RGI_GRIDS);
     rg_result result = rgi_allocate(&scene->memory, 1, sizeof *grid, "a grid", &grid);
     if (result) return result;
-    result = rgi_any_grid_init(grid, scene, config);
+    result = rgi_any_grid_init(grid, scene, *index, config, NULL);
     if (result) {
         rgi_release(&scene->memory, grid, 1, sizeof *grid);
         return result;
@@ -43,7 +45,7 @@ rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint
 void rgi_scene_drop_grid(rg_scene *scene, uint32_t index) {
     rgi_any_grid *grid = scene->grids[index].grid;
     if (!grid) return;
-    rgi_any_grid_free(grid);
+    rgi_any_grid_free(grid, scene);
     rgi_release(&scene->memory, grid, 1, sizeof *grid);
     scene->grids[index].grid = NULL;
     scene->grids[index].generation++;
@@ -90,7 +92,7 @@ rg_result rg_grid_configure(rg_scene *scene, rg_grid id, const rg_grid_config *g
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_scene_find_grid(scene, id, &index);
-    if (!result) result = rgi_any_grid_configure(scene->grids[index].grid, scene, index, &config);
+    if (!result) result = rgi_any_grid_configure(scene->grids[index].grid, scene, &config);
     return rgi_scene_end_change(scene, &frame, result);
 }
 
@@ -100,7 +102,7 @@ rg_result rg_grid_rebuild(rg_scene *scene, rg_grid id) {
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_scene_find_grid(scene, id, &index);
-    if (!result) result = rgi_any_grid_rebuild(scene->grids[index].grid, scene, index);
+    if (!result) result = rgi_any_grid_rebuild(scene->grids[index].grid, scene);
     return rgi_scene_end_change(scene, &frame, result);
 }
 

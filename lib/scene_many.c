@@ -254,7 +254,7 @@ static rg_result check_move(rg_scene *scene, const rg_pose_views *poses, uint64_
     }
     move->bound = p.bound;
     move->reach = p.reach;
-    move->inside = rgi_any_grid_need_move(scene->grids[grid].grid, object, &p.bound, &need->grids[grid]);
+    move->inside = rgi_any_grid_need_move(scene->grids[grid].grid, scene, move->slot, &p.bound, &need->grids[grid]);
     move->whole = p.is_linear || object->linear != RGI_NONE || (object->grid & MARK);
     need->linears += p.is_linear && object->linear == RGI_NONE;
     touch(&need->touched, grid);
@@ -290,9 +290,9 @@ static rg_result make_move(rg_scene *scene, const rg_pose_views *poses, uint64_t
         return result ? result : rgi_move_one(scene, move->slot, &p);
     }
     if (move->inside)
-        rgi_grid_move_inside(&grid->cells, object->place.block, move->bound.lo, move->bound.hi);
+        rgi_any_grid_move_inside(grid, scene, move->slot, &move->bound);
     else
-        result = rgi_any_grid_move(grid, object, move->slot, &move->bound);
+        result = rgi_any_grid_move(grid, scene, move->slot, &move->bound);
     if (result) return result;
     object->reach = move->reach;
     rgi_copy(move->bound.centre, object->position);
@@ -319,7 +319,7 @@ static bool are_quick(const rg_scene *scene, const rg_input *objects, const rg_p
         if (slot >= scene->objects.used) return false;
         const rgi_object *object = rgi_scene_object(scene, slot);
         rgi_load3(&poses->position, i, position);
-        if (!object->shape || object->generation != id >> 32 || !rgi_is_quick(scene, object, position)) return false;
+        if (!object->shape || object->generation != id >> 32 || !rgi_is_quick(scene, slot, position)) return false;
     }
     return true;
 }
@@ -333,13 +333,13 @@ static void move_quickly(rg_scene *scene, const rg_input *objects, const rg_pose
         if (i + 2 * AHEAD < count)
             __builtin_prefetch(rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i + 2 * AHEAD, 0))));
         if (i + AHEAD < count) {
-            const rgi_object *later =
-                rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i + AHEAD, 0)));
-            rgi_lattice_fetch(&scene->grids[later->grid].grid->lattice, &later->place);
+            uint32_t later = RG_OBJECT_SLOT(rgi_load_integer(objects, i + AHEAD, 0));
+            const rgi_any_grid *grid = scene->grids[rgi_scene_object(scene, later)->grid].grid;
+            rgi_lattice_fetch(&grid->lattice, rgi_any_grid_place(grid, scene, later));
         }
         rgi_load3(&poses->position, i, position);
         touch(grids, object->grid);
-        if (rgi_step(scene, object, position)) continue;
+        if (rgi_step(scene, slot, position)) continue;
         rgi_placing p;
         (void)rgi_place_at(scene, object, position, &p);
         (void)rgi_move_one(scene, slot, &p);

@@ -146,14 +146,14 @@ rg_result rgi_move_one(rg_scene *scene, uint32_t slot, const rgi_placing *p) {
     rgi_object *object = rgi_scene_object(scene, slot);
     rg_result result = RG_OK;
     if (p->is_linear && object->linear == RGI_NONE) result = rgi_slots_reserve(&scene->linears, 1);
-    if (!result) result = rgi_any_grid_move(scene->grids[object->grid].grid, object, slot, &p->bound);
+    if (!result) result = rgi_any_grid_move(scene->grids[object->grid].grid, scene, slot, &p->bound);
     if (!result) rgi_set_pose(scene, object, p);
     return result;
 }
 
 rg_shape *rgi_remove_one(rg_scene *scene, uint32_t slot) {
     rgi_object *object = rgi_scene_object(scene, slot);
-    rgi_any_grid_remove(scene->grids[object->grid].grid, object, slot);
+    rgi_any_grid_remove(scene->grids[object->grid].grid, scene, slot);
     return rgi_empty_object(scene, slot);
 }
 
@@ -178,7 +178,10 @@ static rg_result move_by_id(rg_scene *scene, rg_object id, const double position
     rg_result result = rgi_find_object(scene, id, &slot);
     if (result) return result;
     rgi_object *object = rgi_scene_object(scene, slot);
-    if (!pose && rgi_is_quick(scene, object, position) && rgi_step(scene, object, position)) return RG_OK;
+    if (!pose && rgi_is_quick(scene, slot, position) && rgi_step(scene, slot, position)) {
+        if (scene->grids[object->grid].grid->rebuild) rgi_any_grid_settle(scene->grids[object->grid].grid, scene, 1);
+        return RG_OK;
+    }
     result = pose ? rgi_place(object->shape, position, pose->linear, pose->scale, &p)
                   : rgi_place_at(scene, object, position, &p);
     if (!result) result = rgi_move_one(scene, slot, &p);
@@ -194,18 +197,20 @@ rg_result rg_scene_move(rg_scene *scene, rg_object id, const rg_pose *pose) {
     return rgi_scene_end_change(scene, &frame, move_by_id(scene, id, pose->position, pose));
 }
 
-bool rgi_is_quick(const rg_scene *scene, const rgi_object *object, const double position[3]) {
+bool rgi_is_quick(const rg_scene *scene, uint32_t slot, const double position[3]) {
+    const rgi_object *object = rgi_scene_object(scene, slot);
     const rgi_any_grid *grid = scene->grids[object->grid].grid;
     for (int a = 0; a < 3; a++) {
         if (!(fabs(position[a]) <= RG_COORDINATE_MAX)) return false;
     }
     return object->linear == RGI_NONE && object->shape->kind == RG_SHAPE_SPHERE && rgi_any_grid_is_loose(grid) &&
-           object->place.block != RGI_NONE && rgi_lattice_reaches(&grid->lattice, position, object->reach);
+           rgi_any_grid_place(grid, scene, slot)->block != RGI_NONE &&
+           rgi_lattice_reaches(&grid->lattice, position, object->reach);
 }
 
-bool rgi_step(rg_scene *scene, rgi_object *object, const double position[3]) {
-    rgi_lattice *lattice = &scene->grids[object->grid].grid->lattice;
-    if (!rgi_lattice_step(lattice, &object->place, position, object->reach)) return false;
+bool rgi_step(rg_scene *scene, uint32_t slot, const double position[3]) {
+    rgi_object *object = rgi_scene_object(scene, slot);
+    if (!rgi_any_grid_step(scene->grids[object->grid].grid, scene, slot, position, object->reach)) return false;
     rgi_copy(position, object->position);
     return true;
 }

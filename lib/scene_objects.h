@@ -34,10 +34,10 @@ rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *pl
                          rg_object *id);
 
 /** Whether an object is a ball in a lattice, and can be moved to a position without fail. */
-bool rgi_is_quick(const rg_scene *scene, const rgi_object *object, const double position[3]);
+bool rgi_is_quick(const rg_scene *scene, uint32_t slot, const double position[3]);
 
 /** The quick way to move such a one: if it stays in its cell. False: nothing has been done. */
-bool rgi_step(rg_scene *scene, rgi_object *object, const double position[3]);
+bool rgi_step(rg_scene *scene, uint32_t slot, const double position[3]);
 rg_result rgi_move_one(rg_scene *scene, uint32_t slot, const rgi_placing *placing);
 
 /** The part of an insert, and of a remove, that does not concern the grid. */

@@ -31,6 +31,13 @@ rg_result rgi_slots_reserve(rgi_slots *slots, uint64_t count) {
     return result;
 }
 
+rg_result rgi_slots_cover(rgi_slots *slots, uint32_t index) {
+    rg_result result = RG_OK;
+    while (!result && slots->chunks.count <= index >> RGI_CHUNK_BITS)
+        result = rgi_chunks_add(&slots->chunks, slots->purpose);
+    return result;
+}
+
 uint32_t rgi_slots_take(rgi_slots *slots) {
     if (slots->free_count) {
         uint32_t index = slots->free_first;

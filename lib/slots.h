@@ -43,6 +43,9 @@ static inline uint32_t rgi_slots_next(const rgi_slots *slots) {
     return slots->free_count ? slots->free_first : slots->used;
 }
 
+/** For records that are addressed, not taken: makes sure that there is one of this index. RG_OUT_OF_MEMORY. */
+rg_result rgi_slots_cover(rgi_slots *slots, uint32_t index);
+
 /** Takes a record: the one freed last, else a new one, which is all zeros. Must have been reserved. */
 uint32_t rgi_slots_take(rgi_slots *slots);
 

@@ -14,6 +14,10 @@
  *   - The logical box holds all objects. It grows at once when an object leaves it; a ray ends where it leaves it.
  *   - When the diagonal of the logical box is more than `rebuild_factor` times that of the physical box, or when the
  *     number of objects has outgrown an automatic resolution, the grid is rebuilt with a box that fits.
+ * Grids of all kinds that rebuild themselves do so beside what serves traces and changes: on a worker of the scene that
+ * has nothing else to do, or, in a scene without workers, bit by bit in the calls that change it. Until the new grid
+ * takes the place of the old one, all answers are as right as ever. Only a grid of few objects, or one to which a single
+ * call adds a quarter of its objects or more, is rebuilt in that call. Without memory for it, a grid serves on as it is.
  * A grid without a box of its own has no cells as long as it holds only a few objects: testing each costs less.
  */
 #ifndef RAYGRID_GRID_H
@@ -101,7 +105,9 @@ typedef struct rg_grid_report {
     uint64_t unbounded;                    /* objects that no cell can hold (infinite, or larger than the physical
                                               box), tested for every ray */
     uint64_t tiles;                        /* tiles of the physical box that hold something; 1 if nothing left it */
-    uint64_t rebuilds; /* how often it was rebuilt: by itself, rg_grid_rebuild, rg_grid_configure */
+    uint64_t rebuilds;   /* how often it was rebuilt: by itself, rg_grid_rebuild, rg_grid_configure */
+    uint32_t rebuilding; /* 1 while another is made beside it that will take its place, else 0 */
+    uint32_t reserved;   /* 0 */
 } rg_grid_report;
 
 #ifdef __cplusplus

@@ -95,7 +95,7 @@ FIELD(rg_grid_config, lo, 16);
 FIELD(rg_grid_config, hi, 40);
 FIELD(rg_grid_config, rebuild_factor, 64);
 
-SIZE(rg_grid_report, 168);
+SIZE(rg_grid_report, 176);
 FIELD(rg_grid_report, size, 0);
 FIELD(rg_grid_report, kind, 8);
 FIELD(rg_grid_report, levels, 12);
@@ -110,6 +110,7 @@ FIELD(rg_grid_report, entries, 136);
 FIELD(rg_grid_report, unbounded, 144);
 FIELD(rg_grid_report, tiles, 152);
 FIELD(rg_grid_report, rebuilds, 160);
+FIELD(rg_grid_report, rebuilding, 168);
 
 /* scene.h */
 

@@ -39,7 +39,8 @@ void crowd_begin(void) {
     store.blocks_left = -1;
     ck_assert_int_eq(rgi_memory_init(&store.memory, &scarce), RG_OK);
     rgi_slots_init(&store.records, &store.memory, sizeof(rgi_object), "objects of a test");
-    rgi_lattice_init(&store.lattice, &store.memory, &store.records, offsetof(rgi_object, place), rgi_kernels_best());
+    rgi_lattice_init(&store.lattice, &store.memory, &store.records, offsetof(rgi_object, place), NULL,
+                     rgi_kernels_best());
     ck_assert_int_eq(rgi_slots_reserve(&store.records, CROWD_MOST), RG_OK);
     for (uint32_t i = 0; i < CROWD_MOST; i++) MUST(rgi_slots_take(&store.records) == i);
     memset(store.stored, 0, sizeof store.stored);

@@ -11,6 +11,7 @@ static void make(rgi_cells *cells, bool hierarchical, uint32_t n) {
     const uint32_t count[3] = {n, n, n};
     rgi_memory_init(&memory, NULL);
     ck_assert_int_eq(rgi_cells_make(cells, &memory, hierarchical, base, extent, count), RG_OK);
+    rgi_cells_clear(cells, 0, cells->cell_count);
 }
 
 static rgi_placement place(const rgi_cells *cells, double x, double y, double z, double size) {
@@ -36,6 +37,7 @@ START_TEST(levels_halve_up_to_one_cell) {
     const uint32_t count[3] = {16, 8, 2};
     rgi_memory_init(&memory, NULL);
     ck_assert_int_eq(rgi_cells_make(&cells, &memory, true, base, extent, count), RG_OK);
+    rgi_cells_clear(&cells, 0, cells.cell_count);
     ck_assert_uint_eq(cells.level_count, 5);
     const uint32_t expected[5][3] = {{16, 8, 2}, {8, 4, 1}, {4, 2, 1}, {2, 1, 1}, {1, 1, 1}};
     for (int l = 0; l < 5; l++) ck_assert_mem_eq(cells.levels[l].count, expected[l], sizeof expected[l]);

@@ -28,6 +28,7 @@ static void make(rgi_cells *cells, bool hierarchical, double offset, double spre
     const uint32_t count[3] = {16, 16, 8};
     rgi_memory_init(&memory, NULL);
     ck_assert_int_eq(rgi_cells_make(cells, &memory, hierarchical, base, extent, count), RG_OK);
+    rgi_cells_clear(cells, 0, cells->cell_count);
     rgi_empty_box(all_lo, all_hi);
     for (uint32_t i = 0; i < OBJECTS; i++) {
         double size = pow(10, -3 + 3.5 * unit_random());
@@ -160,6 +161,7 @@ START_TEST(a_million_cells) {
     rgi_walk walk;
     rgi_memory_init(&memory, NULL);
     ck_assert_int_eq(rgi_cells_make(&cells, &memory, false, base, extent, count), RG_OK);
+    rgi_cells_clear(&cells, 0, cells.cell_count);
     rgi_cells_place(&cells, small_lo, small_hi, &p);
     rgi_cells_need(&cells, &p, &entries, &tiles);
     ck_assert_uint_eq(entries, 1);

@@ -76,6 +76,7 @@ class GridReport:
     unbounded: int
     tiles: int
     rebuilds: int
+    rebuilding: bool
 
 
 class Grid:
@@ -108,7 +109,9 @@ class Grid:
         same: dict[str, Any] = {name: np.array(list(getattr(report, name))) for name in boxes}
         same.update((name, getattr(report, name)) for name in counts)
         x, y, z = report.resolution
-        return GridReport(kind=GridKind(report.kind), resolution=(x, y, z), **same)
+        return GridReport(
+            kind=GridKind(report.kind), resolution=(x, y, z), rebuilding=bool(report.rebuilding), **same
+        )
 
     def rebuild(self) -> None:
         """Rebuilds the grid now, with a box and a resolution that fit its objects."""

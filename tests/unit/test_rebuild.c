@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: MIT */
+/* Rebuilds beside the grid that serves: whatever changes meanwhile, every ray finds what is there, at every step. */
+#include "unit.h"
+
+#include <raygrid/raygrid.h>
+
+#include <stdbool.h>
+#include <string.h>
+#include <time.h>
+
+enum { MANY = 600, RAYS = 4 };
+
+static const rg_grid_kind kinds[] = {RG_GRID_UNIFORM, RG_GRID_HIERARCHICAL, RG_GRID_LOOSE};
+
+/* Where the objects are taken one after another: each time so far that every kind of grid must be rebuilt. */
+static const double places[] = {1e4, -2e4, 4e4, -8e4};
+
+/* What the scene must hold. */
+static struct {
+    rg_scene *scene;
+    rg_shape *ball;
+    rg_object ids[MANY]; /* 0: none */
+    double at[MANY][3];
+    long blocks_left; /* that the allocator still gives; below 0: all */
+    uint64_t bytes;
+} w;
+
+static void *allocate(void *user, size_t size, size_t alignment) {
+    void *block;
+    (void)user;
+    if (w.blocks_left == 0 || posix_memalign(&block, alignment, size)) return NULL;
+    __atomic_fetch_sub(&w.blocks_left, w.blocks_left > 0, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&w.bytes, size, __ATOMIC_RELAXED);
+    return block;
+}
+
+static void release(void *user, void *block, size_t size, size_t alignment) {
+    (void)user, (void)alignment;
+    __atomic_fetch_sub(&w.bytes, size, __ATOMIC_RELAXED);
+    free(block);
+}
+
+static void begin(rg_grid_kind kind, uint32_t workers) {
+    const rg_grid_config grid = {.size = sizeof grid, .kind = kind};
+    const rg_scene_config config = {
+        .size = sizeof config, .workers = workers, .grid = &grid, .allocator = {NULL, allocate, release}};
+    memset(&w, 0, sizeof w);
+    w.blocks_left = -1;
+    ck_assert_int_eq(rg_shape_create_sphere(NULL, 1, &w.ball), RG_OK);
+    ck_assert_int_eq(rg_scene_create(&config, &w.scene), RG_OK);
+}
+
+static void end(void) {
+    ck_assert_int_eq(rg_scene_destroy(&w.scene), RG_OK);
+    rg_shape_release(&w.ball);
+    ck_assert_uint_eq(w.bytes, 0);
+}
+
+static rg_grid_report report(void) {
+    rg_grid_report r = {.size = sizeof r};
+    ck_assert_int_eq(rg_grid_stats(w.scene, RG_GRID_OF_SCENE, &r), RG_OK);
+    return r;
+}
+
+/* Objects are at whole y and z times 3, so that no two are in each other's way; along x anywhere near `far`. */
+static void place(int i, double far) {
+    w.at[i][0] = far * (1 + 0.1 * unit_random());
+    w.at[i][1] = 3 * (i % 25);
+    w.at[i][2] = 3 * (i / 25);
+}
+
+static rg_result insert(int i, double far) {
+    place(i, far);
+    const rg_pose pose = rg_pose_at(w.at[i][0], w.at[i][1], w.at[i][2]);
+    return rg_scene_insert(w.scene, w.ball, &pose, &w.ids[i]);
+}
+
+static rg_result move(int i, double far) {
+    const double before[3] = {w.at[i][0], w.at[i][1], w.at[i][2]};
+    place(i, far);
+    rg_result result = rg_scene_move_to(w.scene, w.ids[i], w.at[i]);
+    if (result) memcpy(w.at[i], before, sizeof before);
+    return result;
+}
+
+static void take_away(int i) {
+    ck_assert_int_eq(rg_scene_remove(w.scene, w.ids[i]), RG_OK);
+    w.ids[i] = RG_NO_OBJECT;
+}
+
+static void check(int i) {
+    const rg_ray ray = rg_ray_from((double[]){-1e5, 3 * (i % 25), 3 * (i / 25)}, (double[]){1, 0, 0});
+    rg_hit hit;
+    MUST(rg_scene_trace(w.scene, &ray, &hit, 1) == RG_OK);
+    MUST(hit.object == w.ids[i]);
+    MUST(!w.ids[i] || fabs(hit.t - (w.at[i][0] - 1 + 1e5)) <= 0x1p-30);
+}
+
+static void check_some(void) {
+    for (int k = 0; k < RAYS; k++) check((int)(unit_random() * MANY));
+}
+
+static void check_all(void) {
+    uint64_t count = 0;
+    for (int i = 0; i < MANY; i++) {
+        check(i);
+        count += w.ids[i] != RG_NO_OBJECT;
+    }
+    ck_assert_uint_eq(report().objects, count);
+}
+
+/* Something happens to an object. */
+static rg_result change(int i, double far) {
+    if (!w.ids[i]) return insert(i, far);
+    if (unit_random() < 0.8) return move(i, far);
+    take_away(i);
+    return RG_OK;
+}
+
+/* Changes objects, one after another, until a rebuild is under way, or, with workers, has been made. */
+static void until_rebuilding(double far) {
+    uint64_t before = report().rebuilds;
+    for (int n = 0; n < 100 * MANY; n++) {
+        ck_assert_int_eq(change(n % MANY, far), RG_OK);
+        check_some();
+        if (report().rebuilding || report().rebuilds > before) return;
+    }
+    ck_abort_msg("no rebuild begins");
+}
+
+static void fill(double far) {
+    for (int i = 0; i < MANY; i++) ck_assert_int_eq(insert(i, far), RG_OK);
+    for (int n = 0; n < 100 * MANY && report().rebuilding; n++) ck_assert_int_eq(move(n % MANY, far), RG_OK);
+    ck_assert_uint_eq(report().rebuilding, 0);
+}
+
+/* Without workers the changes make the steps. */
+START_TEST(by_the_changes) {
+    begin(kinds[_i], 1);
+    fill(10);
+    uint64_t before = report().rebuilds, during = 0;
+    for (int turn = 0; turn < 4; turn++) {
+        double far = places[turn];
+        until_rebuilding(far);
+        while (report().rebuilding) {
+            ck_assert_int_eq(change((int)(unit_random() * MANY), far), RG_OK);
+            check_some();
+            during++;
+        }
+        check_all();
+    }
+    ck_assert_uint_ge(report().rebuilds, before + 4);
+    ck_assert_uint_ge(during, 4 * 10);
+    end();
+}
+END_TEST
+
+/* A worker makes them while changes and rays go on. */
+START_TEST(by_a_worker) {
+    begin(kinds[_i], 2);
+    fill(10);
+    for (int turn = 0; turn < (SHORT_TESTS ? 4 : 12); turn++) {
+        double far = places[turn % 4];
+        uint64_t before = report().rebuilds;
+        until_rebuilding(far);
+        for (int n = 0; n < 100 * MANY && (report().rebuilding || report().rebuilds == before); n++) {
+            ck_assert_int_eq(change((int)(unit_random() * MANY), far), RG_OK);
+            check_some();
+        }
+        ck_assert_uint_gt(report().rebuilds, before);
+        check_all();
+    }
+    end();
+}
+END_TEST
+
+/* A worker ends it though nobody calls any more. */
+START_TEST(by_a_worker_alone) {
+    const struct timespec briefly = {0, 1000000};
+    begin(kinds[_i], 2);
+    fill(10);
+    until_rebuilding(1e4);
+    while (report().rebuilding) nanosleep(&briefly, NULL);
+    check_all();
+    end();
+}
+END_TEST
+
+/* The memory ends at each point of it: the grid serves on as it is, and no call fails because of the other one. */
+START_TEST(without_memory) {
+    for (long blocks = 0; blocks < 40; blocks += SHORT_TESTS ? 5 : 1) {
+        begin(kinds[_i], 1);
+        fill(10);
+        until_rebuilding(1e4);
+        w.blocks_left = blocks;
+        for (int n = 0; n < 200; n++) {
+            int i = (int)(unit_random() * MANY);
+            if (w.ids[i]) (void)move(i, 1e4);
+            check_some();
+        }
+        w.blocks_left = -1;
+        for (int n = 0; n < 100 * MANY && (report().rebuilding || n < 4 * MANY); n++)
+            ck_assert_int_eq(change(n % MANY, 1e4), RG_OK);
+        ck_assert_uint_eq(report().rebuilding, 0);
+        check_all();
+        end();
+    }
+}
+END_TEST
+
+/* Other calls put an end to it. */
+START_TEST(dropped) {
+    for (int how = 0; how < 4; how++) {
+        const rg_grid_config other = {.size = sizeof other, .kind = kinds[(_i + how) % 3]};
+        begin(kinds[_i], how % 2 ? 2 : 1);
+        fill(10);
+        until_rebuilding(1e4);
+        if (how < 2) ck_assert_int_eq(rg_grid_configure(w.scene, RG_GRID_OF_SCENE, &other), RG_OK);
+        if (how == 2) ck_assert_int_eq(rg_grid_rebuild(w.scene, RG_GRID_OF_SCENE), RG_OK);
+        if (how < 3) {
+            ck_assert_uint_eq(report().rebuilding, 0);
+            check_all();
+        }
+        end();
+    }
+}
+END_TEST
+
+/* Calls on many, which go other ways. */
+START_TEST(calls_on_many) {
+    begin(kinds[_i], 1);
+    fill(10);
+    double far = 1e4;
+    uint64_t before = report().rebuilds;
+    for (int turn = 0; turn < 200; turn++) {
+        rg_object ids[64];
+        double at[64][3];
+        const rg_input objects = {ids, sizeof *ids, RG_U64};
+        rg_pose_views poses = {.size = sizeof poses, .position = rg_input3_packed(at[0], sizeof *at, RG_F64)};
+        if (turn % 50 == 49) far *= -2;
+        for (int k = 0; k < 64; k++) {
+            int i = (turn * 64 + k) % MANY;
+            place(i, far);
+            ids[k] = w.ids[i];
+            memcpy(at[k], w.at[i], sizeof at[k]);
+        }
+        ck_assert_int_eq(rg_scene_move_many(w.scene, &objects, &poses, 64), RG_OK);
+        check_some();
+    }
+    check_all();
+    ck_assert_uint_gt(report().rebuilds, before);
+    end();
+}
+END_TEST
+
+Suite *unit_suite(void) {
+    Suite *suite = suite_create("rebuild");
+    TCase *tests = tcase_create("rebuild");
+    tcase_set_timeout(tests, 100);
+    tcase_add_loop_test(tests, by_the_changes, 0, 3);
+    tcase_add_loop_test(tests, by_a_worker, 0, 3);
+    tcase_add_loop_test(tests, by_a_worker_alone, 0, 3);
+    tcase_add_loop_test(tests, without_memory, 0, 3);
+    tcase_add_loop_test(tests, dropped, 0, 3);
+    tcase_add_loop_test(tests, calls_on_many, 0, 3);
+    suite_add_tcase(suite, tests);
+    return suite;
+}
