@@ -67,6 +67,7 @@ rg_result rgi_grid_config_read(rg_grid_config *config, const rg_grid_config *giv
     rg_result result = rgi_struct_read(config, sizeof *config, CONFIG_LEAST, given, "rg_grid_config");
     if (result) return result;
     rg_grid_config *c = config;
+    c->size = sizeof *c;
     if (c->kind < RG_GRID_DEFAULT || c->kind > RG_GRID_LOOSE)
         return rgi_fail(RG_INVALID_ARGUMENT, "kind is %d, which is no kind of grid", (int)c->kind);
     if (c->kind == RG_GRID_DEFAULT) c->kind = RG_GRID_LOOSE;

@@ -32,6 +32,7 @@ static void default_release(void *user, void *block, size_t size, size_t alignme
 
 rg_result rgi_memory_init(rgi_memory *memory, const rg_allocator *allocator) {
     memset(memory, 0, sizeof *memory);
+    memory->limit = UINT64_MAX;
     if (!allocator || (!allocator->allocate && !allocator->release)) {
         memory->allocator.allocate = default_allocate;
         memory->allocator.release = default_release;
@@ -45,13 +46,27 @@ rg_result rgi_memory_init(rgi_memory *memory, const rg_allocator *allocator) {
     return RG_OK;
 }
 
-rg_result rgi_allocate(rgi_memory *memory, uint64_t count, size_t size, const char *purpose, void *out) {
+/* Counts bytes that are to be allocated. False, and nothing counted, beyond the limit. */
+static bool count(rgi_memory *memory, uint64_t bytes) {
+    uint64_t after = __atomic_add_fetch(&memory->bytes, bytes, __ATOMIC_RELAXED);
+    if (after <= memory->limit) return true;
+    __atomic_fetch_sub(&memory->bytes, bytes, __ATOMIC_RELAXED);
+    return false;
+}
+
+rg_result rgi_allocate(rgi_memory *memory, uint64_t number, size_t size, const char *purpose, void *out) {
     void *block = NULL;
-    if (count <= SIZE_MAX / 2 / size)
-        block = memory->allocator.allocate(memory->allocator.user, (size_t)count * size, ALIGNMENT);
-    if (!block)
-        return rgi_fail(RG_OUT_OF_MEMORY, "no memory for %s: %" PRIu64 " times %zu bytes", purpose, count, size);
-    __atomic_fetch_add(&memory->bytes, count * size, __ATOMIC_RELAXED);
+    uint64_t bytes = number * size;
+    if (number > SIZE_MAX / 2 / size)
+        return rgi_fail(RG_OUT_OF_MEMORY, "no memory for %s: %" PRIu64 " times %zu bytes", purpose, number, size);
+    if (!count(memory, bytes))
+        return rgi_fail(RG_OUT_OF_MEMORY, "%s would need %" PRIu64 " bytes more, beyond the limit of %" PRIu64,
+                        purpose, bytes, memory->limit);
+    block = memory->allocator.allocate(memory->allocator.user, (size_t)bytes, ALIGNMENT);
+    if (!block) {
+        __atomic_fetch_sub(&memory->bytes, bytes, __ATOMIC_RELAXED);
+        return rgi_fail(RG_OUT_OF_MEMORY, "no memory for %s: %" PRIu64 " times %zu bytes", purpose, number, size);
+    }
     memcpy(out, &block, sizeof block);
     return RG_OK;
 }

@@ -11,6 +11,7 @@ enum { RGI_HUGE_PAGE = 1 << 21 };
 typedef struct rgi_memory {
     rg_allocator allocator;
     uint64_t bytes; /* held now; read and written atomically */
+    uint64_t limit; /* of them */
 } rgi_memory;
 
 /** Takes over the host's allocator, or malloc if `allocator` is NULL or empty; RG_INVALID_ARGUMENT if it is half
@@ -18,8 +19,8 @@ typedef struct rgi_memory {
 rg_result rgi_memory_init(rgi_memory *memory, const rg_allocator *allocator);
 
 /**
- * count * size bytes for what the message calls `purpose`, not cleared. RG_OUT_OF_MEMORY, also if the product
- * overflows; *out is then as it was.
+ * count * size bytes, if they are within the limit, for what the message calls `purpose`, not cleared.
+ * RG_OUT_OF_MEMORY, also if the product overflows; *out is then as it was.
  */
 rg_result rgi_allocate(rgi_memory *memory, uint64_t count, size_t size, const char *purpose, void *out);
 

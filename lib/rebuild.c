@@ -277,7 +277,7 @@ bool rgi_rebuild_work(void *context) {
     if (!grid) return false;
     if (finishes) {
         /* Another may have been made or dropped in between. */
-        (void)rgi_scene_begin_change(scene, &frame);
+        rgi_scene_hold(scene, &frame);
         grid = grid_to_rebuild(scene);
         if (grid && waits_for_change(grid->rebuild)) finish(grid, scene);
         (void)rgi_scene_end_change(scene, &frame, RG_OK);

@@ -2,6 +2,7 @@
 #include "any_grid.h"
 
 #include "error.h"
+#include "frame.h"
 #include "rebuild.h"
 #include "struct_size.h"
 
@@ -10,7 +11,11 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MAX_WORKERS = 1024, CONFIG_LEAST = sizeof(rg_scene_config), REPORT_LEAST = offsetof(rg_scene_report, isa) };
+enum {
+    MAX_WORKERS = 1024,
+    CONFIG_LEAST = offsetof(rg_scene_config, memory_limit),
+    REPORT_LEAST = offsetof(rg_scene_report, isa)
+};
 
 /* ------------------------------------------------------------------------------------------------ the lock */
 
@@ -46,12 +51,17 @@ void rgi_scene_end_read(rg_scene *scene, rgi_frame *frame) {
     if (frame->locked) rgi_lock_leave_read(&scene->lock);
 }
 
+void rgi_scene_hold(rg_scene *scene, rgi_frame *frame) {
+    rgi_lock_write(&scene->lock);
+    push(frame, scene);
+}
+
 rg_result rgi_scene_begin_change(rg_scene *scene, rgi_frame *frame) {
     if (!scene) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL");
     if (innermost && rgi_scene_inside(scene))
         return rgi_fail(RG_BUSY, "a scene can't be changed from inside a callback of its own");
-    rgi_lock_write(&scene->lock);
-    push(frame, scene);
+    if (scene->follows) return rgi_fail(RG_BUSY, "a frame of a scene is only changed by its updates");
+    rgi_scene_hold(scene, frame);
     return RG_OK;
 }
 
@@ -64,7 +74,7 @@ rg_result rgi_scene_end_change(rg_scene *scene, rgi_frame *frame, rg_result resu
 /* ------------------------------------------------------------------------------------------------ lifetime */
 
 static const rg_scene_config default_config = {
-    sizeof(rg_scene_config), 0, 0, {NULL, NULL, NULL}, NULL, NULL, NULL, NULL, NULL};
+    sizeof(rg_scene_config), 0, 0, {NULL, NULL, NULL}, NULL, NULL, NULL, NULL, NULL, 0};
 
 rg_result rg_scene_config_default(rg_scene_config *config, size_t size) {
     return rgi_struct_default(&default_config, sizeof default_config, CONFIG_LEAST, config, size, "rg_scene_config");
@@ -76,6 +86,7 @@ static uint32_t processors(void) {
 }
 
 static void scene_free(rg_scene *scene) {
+    rgi_follower_end(scene);
     rgi_pool_destroy(scene->pool);
     for (uint32_t i = 0; i < scene->objects.used; i++) rg_shape_release(&rgi_scene_object(scene, i)->shape);
     for (uint32_t i = 0; i < scene->grid_places; i++) rgi_scene_drop_grid(scene, i);
@@ -104,6 +115,7 @@ rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
     rg_result result = rgi_struct_read(&config, sizeof config, CONFIG_LEAST, given, "rg_scene_config");
     if (!result) result = check_config(&config, &grid);
     if (!result) result = rgi_memory_init(&memory, &config.allocator);
+    if (!result && config.memory_limit) memory.limit = config.memory_limit;
     if (!result) result = rgi_allocate(&memory, 1, sizeof *scene, "a scene", &scene);
     if (result) return result;
     memset(scene, 0, sizeof *scene);
@@ -127,8 +139,9 @@ rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
     return RG_OK;
 }
 
-/* Waits for calls that began before: those that wait for the lock, and traces between two groups of rays. */
-static void wait_for_calls(rg_scene *scene) {
+/* Waits for calls that began before: those that wait for the lock, and traces between two groups of rays. Returns
+ * whether there are no frames that still need the scene. */
+static bool wait_for_calls(rg_scene *scene) {
     const struct timespec briefly = {0, 50000};
     rgi_lock_write(&scene->lock);
     while (rgi_lock_has_waiting(&scene->lock) || __atomic_load_n(&scene->running, __ATOMIC_ACQUIRE)) {
@@ -136,7 +149,9 @@ static void wait_for_calls(rg_scene *scene) {
         nanosleep(&briefly, NULL);
         rgi_lock_write(&scene->lock);
     }
+    bool free = !scene->followers;
     rgi_lock_leave_write(&scene->lock);
+    return free;
 }
 
 rg_result rg_scene_destroy(rg_scene **pointer) {
@@ -144,8 +159,8 @@ rg_result rg_scene_destroy(rg_scene **pointer) {
     if (rgi_scene_inside(*pointer))
         return rgi_fail(RG_BUSY, "a scene can't be destroyed from inside a callback of its own");
     rg_scene *scene = *pointer;
+    if (!wait_for_calls(scene)) return rgi_fail(RG_BUSY, "a scene can't be destroyed before its frames");
     *pointer = NULL;
-    wait_for_calls(scene);
     scene_free(scene);
     return RG_OK;
 }

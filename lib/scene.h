@@ -36,9 +36,11 @@ struct rg_scene {
     rgi_grid_place grids[RGI_GRIDS];
     uint32_t grid_places; /* all below were used */
     uint32_t grid_count;
-    bool masked;           /* there has been an object that some rays do not see */
-    uint64_t invalid_rays; /* atomic */
-    uint32_t running;      /* atomic: traces under way that let changes in between their rays */
+    bool masked;                    /* there has been an object that some rays do not see */
+    uint64_t invalid_rays;          /* atomic */
+    uint32_t running;               /* atomic: traces under way that let changes in between their rays */
+    struct rgi_follower *followers; /* frames of this scene */
+    struct rgi_follower *follows;   /* this scene is a frame; or NULL */
 };
 
 /* ------------------------------------------------------------------------------------------------ the lock */
@@ -57,10 +59,15 @@ bool rgi_scene_inside(const rg_scene *scene);
 void rgi_scene_begin_read(rg_scene *scene, rgi_frame *frame);
 void rgi_scene_end_read(rg_scene *scene, rgi_frame *frame);
 
-/** Begins a change: waits for all others. RG_INVALID_ARGUMENT: no scene. RG_BUSY: from inside a callback. */
+/** Begins a change: waits for all others. RG_INVALID_ARGUMENT: no scene. RG_BUSY: from inside a callback, or of a
+ * frame.
+ */
 rg_result rgi_scene_begin_change(rg_scene *scene, rgi_frame *frame);
 
-/** Ends it; returns `result`. */
+/** The same for the library's own changes, which nothing forbids. */
+void rgi_scene_hold(rg_scene *scene, rgi_frame *frame);
+
+/** Ends either; returns `result`. */
 rg_result rgi_scene_end_change(rg_scene *scene, rgi_frame *frame, rg_result result);
 
 /* ------------------------------------------------------------------------------------------------ its parts */
@@ -84,5 +91,8 @@ rg_grid rgi_scene_grid_id(const rg_scene *scene, uint32_t index);
 /** Puts a new grid at the first free place and returns its index. */
 rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint32_t *index);
 void rgi_scene_drop_grid(rg_scene *scene, uint32_t index);
+
+/** Puts a new grid at a free place. */
+rg_result rgi_scene_put_grid(rg_scene *scene, const rg_grid_config *config, uint32_t index);
 
 #endif

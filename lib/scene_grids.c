@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "any_grid.h"
 #include "error.h"
+#include "frame.h"
 #include "struct_size.h"
 
 #include <stddef.h>
@@ -25,21 +26,25 @@ static uint32_t free_place(const rg_scene *scene) {
     return i;
 }
 
-rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint32_t *index) {
+rg_result rgi_scene_put_grid(rg_scene *scene, const rg_grid_config *config, uint32_t index) {
     rgi_any_grid *grid;
-    *index = free_place(scene);
-    if (*index == RGI_GRIDS) return rgi_fail(RG_LIMIT_EXCEEDED, "a scene has %d grids at the most", RGI_GRIDS);
     rg_result result = rgi_allocate(&scene->memory, 1, sizeof *grid, "a grid", &grid);
     if (result) return result;
-    result = rgi_any_grid_init(grid, scene, *index, config, NULL);
+    result = rgi_any_grid_init(grid, scene, index, config, NULL);
     if (result) {
         rgi_release(&scene->memory, grid, 1, sizeof *grid);
         return result;
     }
-    if (*index == scene->grid_places) scene->grids[scene->grid_places++].generation = *index ? 1 : 0;
-    scene->grids[*index].grid = grid;
+    if (index == scene->grid_places) scene->grids[scene->grid_places++].generation = index ? 1 : 0;
+    scene->grids[index].grid = grid;
     scene->grid_count++;
     return RG_OK;
+}
+
+rg_result rgi_scene_add_grid(rg_scene *scene, const rg_grid_config *config, uint32_t *index) {
+    *index = free_place(scene);
+    if (*index == RGI_GRIDS) return rgi_fail(RG_LIMIT_EXCEEDED, "a scene has %d grids at the most", RGI_GRIDS);
+    return rgi_scene_put_grid(scene, config, *index);
 }
 
 void rgi_scene_drop_grid(rg_scene *scene, uint32_t index) {
@@ -61,7 +66,10 @@ rg_result rg_grid_create(rg_scene *scene, const rg_grid_config *given, rg_grid *
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_scene_add_grid(scene, &config, &index);
-    if (!result) *out = rgi_scene_grid_id(scene, index);
+    if (!result) {
+        *out = rgi_scene_grid_id(scene, index);
+        rgi_followers_note_grids(scene);
+    }
     return rgi_scene_end_change(scene, &frame, result);
 }
 
@@ -81,7 +89,9 @@ rg_result rg_grid_destroy(rg_scene *scene, rg_grid id) {
     rgi_frame frame;
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
-    return rgi_scene_end_change(scene, &frame, destroy(scene, id));
+    result = destroy(scene, id);
+    if (!result) rgi_followers_note_grids(scene);
+    return rgi_scene_end_change(scene, &frame, result);
 }
 
 rg_result rg_grid_configure(rg_scene *scene, rg_grid id, const rg_grid_config *given) {
@@ -93,6 +103,7 @@ rg_result rg_grid_configure(rg_scene *scene, rg_grid id, const rg_grid_config *g
     if (result) return result;
     result = rgi_scene_find_grid(scene, id, &index);
     if (!result) result = rgi_any_grid_configure(scene->grids[index].grid, scene, &config);
+    if (!result) rgi_followers_note_grids(scene);
     return rgi_scene_end_change(scene, &frame, result);
 }
 

@@ -5,6 +5,7 @@
  */
 #include "any_grid.h"
 #include "error.h"
+#include "frame.h"
 #include "scene_objects.h"
 #include "struct_size.h"
 #include "vec.h"
@@ -296,6 +297,7 @@ static rg_result make_move(rg_scene *scene, const rg_pose_views *poses, uint64_t
     if (result) return result;
     object->reach = move->reach;
     rgi_copy(move->bound.centre, object->position);
+    rgi_scene_changed(scene, move->slot);
     return result;
 }
 
@@ -391,7 +393,7 @@ static rg_result mark_all(rg_scene *scene, const rg_input *objects, uint64_t cou
     return RG_OK;
 }
 
-static rg_result remove_all(rg_scene *scene, const rg_input *objects, uint64_t count) {
+static rg_result remove_all(rg_scene *scene, const rg_input *objects, uint64_t count, rg_shape **gone) {
     uint64_t marked;
     touched grids;
     memset(&grids, 0, sizeof grids);
@@ -401,8 +403,7 @@ static rg_result remove_all(rg_scene *scene, const rg_input *objects, uint64_t c
     for (uint64_t i = 0; i < count; i++) {
         uint32_t slot = RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0));
         touch(&grids, rgi_scene_object(scene, slot)->grid);
-        rg_shape *shape = rgi_remove_one(scene, slot);
-        rg_shape_release(&shape);
+        rgi_shape_put_aside(rgi_remove_one(scene, slot), gone);
     }
     settle(scene, &grids, count);
     return RG_OK;
@@ -414,5 +415,8 @@ rg_result rg_scene_remove_many(rg_scene *scene, const rg_input *objects, uint64_
     rg_result result = rgi_check_view(objects->data, objects->type, RGI_U64, count > 0, "objects");
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
-    return rgi_scene_end_change(scene, &frame, remove_all(scene, objects, count));
+    rg_shape *gone = NULL;
+    result = rgi_scene_end_change(scene, &frame, remove_all(scene, objects, count, &gone));
+    rgi_shapes_destroy(gone);
+    return result;
 }

@@ -4,6 +4,7 @@
 
 #include "any_grid.h"
 #include "error.h"
+#include "frame.h"
 #include "struct_size.h"
 #include "vec.h"
 
@@ -53,13 +54,17 @@ rg_result rgi_place(const rg_shape *shape, const double position[3], const float
     return result ? result : derive(shape, p);
 }
 
-rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3], rgi_placing *p) {
-    const rgi_linear *linear = rgi_scene_linear(scene, object);
+rg_result rgi_place_with(const rgi_object *object, const rgi_linear *linear, const double position[3],
+                         rgi_placing *p) {
     rgi_copy(position, p->bound.centre);
     p->bound.radius = object->reach;
     p->is_linear = linear != NULL;
     if (linear) p->linear = *linear;
     return derive(object->shape, p);
+}
+
+rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3], rgi_placing *p) {
+    return rgi_place_with(object, rgi_scene_linear(scene, object), position, p);
 }
 
 double rgi_object_scale(const rgi_object *object, const rgi_linear *linear) {
@@ -91,7 +96,9 @@ static void set_linear(rg_scene *scene, rgi_object *object, const rgi_placing *p
     }
 }
 
-void rgi_set_pose(rg_scene *scene, rgi_object *object, const rgi_placing *p) {
+void rgi_set_pose(rg_scene *scene, uint32_t slot, const rgi_placing *p) {
+    rgi_object *object = rgi_scene_object(scene, slot);
+    rgi_scene_changed(scene, slot);
     object->reach = p->reach;
     rgi_copy(p->bound.centre, object->position);
     set_linear(scene, object, p);
@@ -107,16 +114,23 @@ void rgi_fill_object(rg_scene *scene, uint32_t slot, rg_shape *shape, const rgi_
     object->mask = mask;
     scene->masked |= mask != UINT32_MAX;
     object->grid = grid;
-    rgi_set_pose(scene, object, p);
+    rgi_set_pose(scene, slot, p);
     scene->object_count++;
+}
+
+rg_shape *rgi_clear_object(rg_scene *scene, uint32_t slot) {
+    rgi_object *object = rgi_scene_object(scene, slot);
+    rg_shape *shape = object->shape;
+    rgi_scene_changed(scene, slot);
+    if (object->linear != RGI_NONE) rgi_slots_give(&scene->linears, object->linear);
+    object->shape = NULL;
+    scene->object_count--;
+    return shape;
 }
 
 rg_shape *rgi_empty_object(rg_scene *scene, uint32_t slot) {
     rgi_object *object = rgi_scene_object(scene, slot);
-    rg_shape *shape = object->shape;
-    if (object->linear != RGI_NONE) rgi_slots_give(&scene->linears, object->linear);
-    object->shape = NULL;
-    scene->object_count--;
+    rg_shape *shape = rgi_clear_object(scene, slot);
     if (object->generation < UINT32_MAX) {
         object->generation++;
         rgi_slots_give(&scene->objects, slot);
@@ -147,7 +161,7 @@ rg_result rgi_move_one(rg_scene *scene, uint32_t slot, const rgi_placing *p) {
     rg_result result = RG_OK;
     if (p->is_linear && object->linear == RGI_NONE) result = rgi_slots_reserve(&scene->linears, 1);
     if (!result) result = rgi_any_grid_move(scene->grids[object->grid].grid, scene, slot, &p->bound);
-    if (!result) rgi_set_pose(scene, object, p);
+    if (!result) rgi_set_pose(scene, slot, p);
     return result;
 }
 
@@ -212,6 +226,7 @@ bool rgi_step(rg_scene *scene, uint32_t slot, const double position[3]) {
     rgi_object *object = rgi_scene_object(scene, slot);
     if (!rgi_any_grid_step(scene->grids[object->grid].grid, scene, slot, position, object->reach)) return false;
     rgi_copy(position, object->position);
+    rgi_scene_changed(scene, slot);
     return true;
 }
 
@@ -231,6 +246,7 @@ rg_result rg_scene_set_mask(rg_scene *scene, rg_object id, uint32_t mask) {
     result = rgi_find_object(scene, id, &slot);
     if (!result) {
         rgi_scene_object(scene, slot)->mask = mask;
+        rgi_scene_changed(scene, slot);
         scene->masked |= mask != UINT32_MAX;
     }
     return rgi_scene_end_change(scene, &frame, result);
@@ -239,16 +255,18 @@ rg_result rg_scene_set_mask(rg_scene *scene, rg_object id, uint32_t mask) {
 rg_result rg_scene_remove(rg_scene *scene, rg_object id) {
     rgi_frame frame;
     uint32_t slot;
+    rg_shape *gone = NULL;
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     result = rgi_find_object(scene, id, &slot);
     if (!result) {
         uint32_t grid = rgi_scene_object(scene, slot)->grid;
-        rg_shape *shape = rgi_remove_one(scene, slot);
+        rgi_shape_put_aside(rgi_remove_one(scene, slot), &gone);
         rgi_any_grid_settle(scene->grids[grid].grid, scene, 1);
-        rg_shape_release(&shape);
     }
-    return rgi_scene_end_change(scene, &frame, result);
+    rgi_scene_end_change(scene, &frame, result);
+    rgi_shapes_destroy(gone);
+    return result;
 }
 
 /* -------------------------------------------------------------------------------------------------- lookup */
@@ -266,6 +284,20 @@ static void report_object(const rg_scene *scene, const rgi_object *object, rg_ob
     r->grid = rgi_scene_grid_id(scene, object->grid);
     rgi_copy(p.bound.lo, r->lo);
     rgi_copy(p.bound.hi, r->hi);
+}
+
+rg_result rg_scene_shape_of(rg_scene *scene, rg_object id, rg_shape **shape) {
+    rgi_frame frame;
+    uint32_t slot;
+    if (!scene || !shape) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", scene ? "shape" : "scene");
+    rgi_scene_begin_read(scene, &frame);
+    rg_result result = rgi_find_object(scene, id, &slot);
+    if (!result) {
+        *shape = rgi_scene_object(scene, slot)->shape;
+        rg_shape_retain(*shape);
+    }
+    rgi_scene_end_read(scene, &frame);
+    return result;
 }
 
 rg_result rg_scene_lookup(rg_scene *scene, rg_object id, rg_object_report *report) {

@@ -22,6 +22,10 @@ rg_result rgi_place(const rg_shape *shape, const double position[3], const float
 rg_result rgi_place_at(const rg_scene *scene, const rgi_object *object, const double position[3],
                        rgi_placing *placing);
 
+/** The same for an object whose linear part, or NULL, is not that of a scene. */
+rg_result rgi_place_with(const rgi_object *object, const rgi_linear *linear, const double position[3],
+                         rgi_placing *placing);
+
 /** The scale of its pose. */
 double rgi_object_scale(const rgi_object *object, const rgi_linear *linear);
 
@@ -45,8 +49,11 @@ void rgi_fill_object(rg_scene *scene, uint32_t slot, rg_shape *shape, const rgi_
                      uint32_t grid);
 rg_shape *rgi_empty_object(rg_scene *scene, uint32_t slot);
 
+/** Empties a slot that is not to be taken again. */
+rg_shape *rgi_clear_object(rg_scene *scene, uint32_t slot);
+
 /** The part of a move that does not concern the grid. A record for a new linear part must have been reserved. */
-void rgi_set_pose(rg_scene *scene, rgi_object *object, const rgi_placing *placing);
+void rgi_set_pose(rg_scene *scene, uint32_t slot, const rgi_placing *placing);
 
 /** Returns the shape, for the caller to release last: its destroy callback must find a scene that is in order. */
 rg_shape *rgi_remove_one(rg_scene *scene, uint32_t slot);

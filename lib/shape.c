@@ -365,15 +365,33 @@ void rg_shape_retain(rg_shape *shape) {
     if (shape) __atomic_fetch_add(&shape->references, 1, __ATOMIC_RELAXED);
 }
 
-void rg_shape_release(rg_shape **pointer) {
-    if (!pointer || !*pointer) return;
-    rg_shape *shape = *pointer;
-    *pointer = NULL;
+void rgi_shape_put_aside(rg_shape *shape, rg_shape **list) {
     if (__atomic_sub_fetch(&shape->references, 1, __ATOMIC_ACQ_REL) != 0) return;
+    shape->next = *list;
+    *list = shape;
+}
+
+static void destroy(rg_shape *shape) {
     if (shape->kind == RG_SHAPE_MESH) rgi_mesh_destroy(shape->of.mesh);
     if (shape->kind == RG_SHAPE_USER && shape->of.user.destroy) shape->of.user.destroy(shape->of.user.user);
     rgi_memory memory = shape->memory;
     rgi_release(&memory, shape, 1, sizeof *shape);
+}
+
+void rgi_shapes_destroy(rg_shape *list) {
+    while (list) {
+        rg_shape *next = list->next;
+        destroy(list);
+        list = next;
+    }
+}
+
+void rg_shape_release(rg_shape **pointer) {
+    rg_shape *gone = NULL;
+    if (!pointer || !*pointer) return;
+    rgi_shape_put_aside(*pointer, &gone);
+    *pointer = NULL;
+    rgi_shapes_destroy(gone);
 }
 
 rg_result rg_shape_stats(const rg_shape *shape, rg_shape_report *report) {

@@ -11,7 +11,8 @@ struct rg_shape {
     rgi_memory memory;
     uint32_t references; /* atomic */
     rg_shape_kind kind;
-    double lo[3], hi[3]; /* the local box; for a box the box itself */
+    struct rg_shape *next; /* of a list of those put aside */
+    double lo[3], hi[3];   /* the local box; for a box the box itself */
     union {
         double radius; /* sphere */
         rgi_capsule capsule;
@@ -19,6 +20,13 @@ struct rg_shape {
         rg_user_shape user;
     } of;
 };
+
+/**
+ * Gives a reference back while a scene is held: the host's `destroy` is not to be called then. If it was the last one
+ * the shape comes to a list, and rgi_shapes_destroy ends what is there.
+ */
+void rgi_shape_put_aside(rg_shape *shape, rg_shape **list);
+void rgi_shapes_destroy(rg_shape *list);
 
 /** As the functions of intersect.h, for any shape. ray->failed is set if a callback failed. */
 bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidate *candidate);

@@ -6,19 +6,20 @@
  * its own kind, for instance one for what never moves. Every object is in exactly one; a trace goes through all.
  *
  * The default kind is RG_GRID_LOOSE, see there. The other two follow E. Reinhard, B. Smits, C. Hansen, "Dynamic
- * Acceleration Structures for Interactive Ray Tracing" (Eurographics Workshop on Rendering 2000, the parts on grids and
- * on hierarchical grids):
+ * Acceleration Structures for Interactive Ray Tracing" (Eurographics Workshop on Rendering 2000, the parts on grids
+ * and on hierarchical grids):
  *   - The physical box is where the cells are. Space is tiled by copies of it: a place outside has the cell at the
  *     same place in its own tile, so an object that leaves the box re-enters on the other side. Each entry of a cell
  *     carries its tile, and a ray passes over entries of other tiles.
  *   - The logical box holds all objects. It grows at once when an object leaves it; a ray ends where it leaves it.
  *   - When the diagonal of the logical box is more than `rebuild_factor` times that of the physical box, or when the
  *     number of objects has outgrown an automatic resolution, the grid is rebuilt with a box that fits.
- * Grids of all kinds that rebuild themselves do so beside what serves traces and changes: on a worker of the scene that
- * has nothing else to do, or, in a scene without workers, bit by bit in the calls that change it. Until the new grid
- * takes the place of the old one, all answers are as right as ever. Only a grid of few objects, or one to which a single
- * call adds a quarter of its objects or more, is rebuilt in that call. Without memory for it, a grid serves on as it is.
- * A grid without a box of its own has no cells as long as it holds only a few objects: testing each costs less.
+ * Grids of all kinds that rebuild themselves do so beside what serves traces and changes: on a worker of the scene
+ * that has nothing else to do, or, in a scene without workers, bit by bit in the calls that change it. Until the new
+ * grid takes the place of the old one, all answers are as right as ever. Only a grid of few objects, or one to which
+ * a single call adds a quarter of its objects or more, is rebuilt in that call. Without memory for it, a grid serves
+ * on as it is. A grid without a box of its own has no cells as long as it holds only a few objects: testing each
+ * costs less.
  */
 #ifndef RAYGRID_GRID_H
 #define RAYGRID_GRID_H
@@ -52,9 +53,9 @@ enum {
     /**
      * A lattice of cells, each half as wide as the one above it, made where objects are. An object is stored once, by
      * its centre, in a cell that fits its size; tight boxes around what is stored decide what a ray looks into. Cells
-     * hold floats, relative to an origin and a unit that were chosen from the objects. It has no box that objects could
-     * leave: resolution, lo, hi and rebuild_factor have no meaning, and it is made anew by itself only when all objects
-     * have drifted four radii of the whole away from that origin, or when many are out of floats' reach.
+     * hold floats, relative to an origin and a unit that were chosen from the objects. It has no box that objects
+     * could leave: resolution, lo, hi and rebuild_factor have no meaning, and it is made anew by itself only when all
+     * objects have drifted four radii of the whole away from that origin, or when many are out of floats' reach.
      */
     RG_GRID_LOOSE = 3
 };

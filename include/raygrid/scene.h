@@ -52,12 +52,17 @@ typedef struct rg_scene_config {
     /** The host's job system in place of workers; then no thread is made. NULL: workers. */
     rg_parallel_for parallel_for;
     void *parallel_for_user;
-    /** Told when a grid is rebuilt, or could not be for want of memory. NULL: nobody. Called with the scene locked.
+    /**
+     * Told when a grid is rebuilt, or could not be for want of memory. NULL: nobody. Called by whichever thread does
+     * it, also a worker, in the midst of it: it must not use the scene.
      */
     rg_log log;
     void *log_user;
     /** How RG_GRID_OF_SCENE is made. NULL: defaults. Read during the call only. */
     const rg_grid_config *grid;
+    /** Bytes that the scene may hold from its allocator (rg_scene_report.bytes); 0: no limit. What would need more
+     * gives RG_OUT_OF_MEMORY, as if the allocator had none. Shapes are not counted. */
+    uint64_t memory_limit;
 } rg_scene_config;
 
 /**
@@ -75,7 +80,7 @@ RG_API rg_result rg_scene_create(const rg_scene_config *config, rg_scene **scene
 /**
  * Ends the scene, its workers, and its objects' references to their shapes; sets the pointer to NULL. Waits for calls
  * that other threads have begun on it; none may follow. NULL, or a pointer to NULL, is ignored and RG_OK.
- * RG_BUSY: called from inside a callback of this scene; the scene lives on.
+ * RG_BUSY: called from inside a callback of this scene, or it has frames; the scene lives on.
  */
 RG_API rg_result rg_scene_destroy(rg_scene **scene);
 
@@ -176,7 +181,8 @@ RG_API rg_result rg_scene_remove_many(rg_scene *scene, const rg_input *objects, 
 typedef struct rg_object_report {
     size_t size;
     rg_pose pose;
-    rg_shape *shape; /* not retained for the caller; valid as long as the object or another reference lives */
+    rg_shape *shape; /* not retained for the caller; valid as long as the object or another reference lives. Where
+                        another thread may remove the object: rg_scene_shape_of. */
     uint32_t mask;
     rg_grid grid;
     double lo[3], hi[3]; /* the world box that holds it */
@@ -184,6 +190,11 @@ typedef struct rg_object_report {
 
 /** Looks an object up. Errors: RG_INVALID_ARGUMENT, RG_INVALID_ID. Cost: constant. */
 RG_API rg_result rg_scene_lookup(rg_scene *scene, rg_object object, rg_object_report *report);
+
+/** The shape of an object, with a reference for the caller. Errors: RG_INVALID_ARGUMENT, RG_INVALID_ID. Cost:
+ * constant.
+ */
+RG_API rg_result rg_scene_shape_of(rg_scene *scene, rg_object object, rg_shape **shape);
 
 /** The instructions that the kernels of a scene use: the best that were built and that the processor has. */
 typedef int32_t rg_isa;
@@ -216,6 +227,27 @@ typedef struct rg_scene_report {
 
 /** Fills `report`. Errors: RG_INVALID_ARGUMENT. */
 RG_API rg_result rg_scene_stats(rg_scene *scene, rg_scene_report *report);
+
+/* ------------------------------------------------------------------------------------------------- frames */
+
+/**
+ * Makes a frame of a scene: a scene that holds what `scene` held at one instant, under the same ids, and stays like
+ * that while `scene` goes on to change; until rg_scene_update_frame. It is traced, read and destroyed like any scene.
+ * All that would change it gives RG_BUSY. Its shapes are those of the scene; what the scene's grids are its grids
+ * are, and `config->grid` is not used. `scene` can't be destroyed before its frames. Errors: as rg_scene_create;
+ * RG_BUSY (from inside a callback of the scene). Cost: linear in the objects, and their memory once more; each change
+ * of the scene takes a few ns more then.
+ */
+RG_API rg_result rg_scene_create_frame(rg_scene *scene, const rg_scene_config *config, rg_scene **frame);
+
+/**
+ * Takes over what has changed in the scene since the last update: all of one instant. Traces of the frame see it
+ * whole or not at all, as a change; the scene is held only while its changes are copied, and as by a trace. Errors:
+ * RG_INVALID_ARGUMENT (it is no frame), RG_BUSY (from inside a callback of the frame), RG_OUT_OF_MEMORY: then each
+ * object is where it was at the last or at this update, and the next one makes up for it. Cost: that of moving what
+ * has changed, each object once.
+ */
+RG_API rg_result rg_scene_update_frame(rg_scene *frame);
 
 /* -------------------------------------------------------------------------------------------------- grids */
 

@@ -130,7 +130,8 @@ typedef struct rg_user_shape {
     int32_t (*intersect)(void *user, const rg_local_ray *ray, rg_local_hit *hit);
     /** Whether there is any hit in the range; the same returns. NULL: intersect is asked. */
     int32_t (*occluded)(void *user, const rg_local_ray *ray);
-    /** Called once when the last reference has gone. May be NULL. */
+    /** Called once when the last reference has gone, by the thread that gave it back, when the call of it on a scene
+     * is done: it may use any scene but one that is being destroyed. May be NULL. */
     void (*destroy)(void *user);
 } rg_user_shape;
 

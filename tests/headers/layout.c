@@ -111,10 +111,11 @@ FIELD(rg_grid_report, unbounded, 144);
 FIELD(rg_grid_report, tiles, 152);
 FIELD(rg_grid_report, rebuilds, 160);
 FIELD(rg_grid_report, rebuilding, 168);
+FIELD(rg_grid_report, reserved, 172);
 
 /* scene.h */
 
-SIZE(rg_scene_config, 80);
+SIZE(rg_scene_config, 88);
 FIELD(rg_scene_config, size, 0);
 FIELD(rg_scene_config, workers, 8);
 FIELD(rg_scene_config, reserved, 12);
@@ -124,6 +125,7 @@ FIELD(rg_scene_config, parallel_for_user, 48);
 FIELD(rg_scene_config, log, 56);
 FIELD(rg_scene_config, log_user, 64);
 FIELD(rg_scene_config, grid, 72);
+FIELD(rg_scene_config, memory_limit, 80);
 
 SIZE(rg_pose, 72);
 FIELD(rg_pose, position, 0);

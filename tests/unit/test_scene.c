@@ -602,6 +602,91 @@ START_TEST(no_ray_hits_where_it_starts) {
 }
 END_TEST
 
+/* What a shape's destroy callback finds. */
+static void use_scene(void *user) {
+    rg_pose pose = rg_pose_at(0, 30, 0);
+    int *called = user;
+    ++*called;
+    ck_assert_uint_eq(trace(scene, along_x(0, 0)).object, RG_NO_OBJECT);
+    ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, NULL), RG_OK);
+}
+
+/* Shapes end when the call that gave back their last reference has let go of the scene. */
+START_TEST(destroy_callbacks_may_use_the_scene) {
+    int called = 0;
+    const rg_user_shape user = {
+        .size = sizeof user, .user = &called, .hi = {1, 1, 1}, .intersect = try_all, .destroy = use_scene};
+    for (int many = 0; many < 2; many++) {
+        rg_object ids[4];
+        for (int i = 0; i < 4; i++) {
+            rg_shape *shape;
+            ck_assert_int_eq(rg_shape_create_user(NULL, &user, &shape), RG_OK);
+            ck_assert_int_eq(rg_scene_insert(scene, shape, NULL, &ids[i]), RG_OK);
+            rg_shape_release(&shape);
+        }
+        ck_assert_int_eq(called, 4 * many);
+        const rg_input all = {ids, sizeof *ids, RG_U64};
+        if (many) ck_assert_int_eq(rg_scene_remove_many(scene, &all, 4), RG_OK);
+        for (int i = 3; i >= 0 && !many; i--) {
+            /* The others are in the way of the ray that the last one traces. */
+            ck_assert_int_eq(rg_scene_set_mask(scene, ids[i], 0), RG_OK);
+        }
+        for (int i = 0; i < 4 && !many; i++) ck_assert_int_eq(rg_scene_remove(scene, ids[i]), RG_OK);
+        ck_assert_int_eq(called, 4 * (many + 1));
+    }
+}
+END_TEST
+
+/* A shape that outlives its object because somebody asked for it. */
+START_TEST(shapes_of_objects) {
+    rg_object id = insert_at(0, 0, 0);
+    rg_shape *shape = NULL, *none = NULL;
+    ck_assert_int_eq(rg_scene_shape_of(scene, id, &shape), RG_OK);
+    ck_assert_ptr_eq(shape, ball);
+    ck_assert_int_eq(rg_scene_remove(scene, id), RG_OK);
+    rg_shape_release(&ball);
+    rg_shape_report report = {.size = sizeof report};
+    ck_assert_int_eq(rg_shape_stats(shape, &report), RG_OK);
+    ck_assert_int_eq(rg_scene_shape_of(scene, id, &none), RG_INVALID_ID);
+    ck_assert_ptr_null(none);
+    ck_assert_int_eq(rg_scene_shape_of(NULL, id, &none), RG_INVALID_ARGUMENT);
+    ck_assert_int_eq(rg_scene_shape_of(scene, id, NULL), RG_INVALID_ARGUMENT);
+    ball = shape;
+}
+END_TEST
+
+/* With a limit the scene fills up, refuses what is too much, and goes on. */
+START_TEST(a_limit_of_memory) {
+    enum { LIMIT = 1 << 20, MANY = 100000 };
+    const rg_scene_config config = {.size = sizeof config, .workers = 1, .memory_limit = LIMIT};
+    rg_scene_report report = {.size = sizeof report};
+    rg_scene *limited;
+    rg_object last = RG_NO_OBJECT;
+    uint64_t count = 0;
+    ck_assert_int_eq(rg_scene_create(&config, &limited), RG_OK);
+    for (int i = 0; i < MANY; i++) {
+        rg_pose pose = rg_pose_at(3 * (i % 50), 3 * (i / 50 % 50), 3 * (i / 2500));
+        rg_result result = rg_scene_insert(limited, ball, &pose, &last);
+        if (result) ck_assert_int_eq(result, RG_OUT_OF_MEMORY);
+        if (result) break;
+        count++;
+    }
+    ck_assert(count > 1000 && count < MANY);
+    ck_assert_ptr_nonnull(strstr(rg_error_message(), "the limit of 1048576"));
+    ck_assert_int_eq(rg_scene_stats(limited, &report), RG_OK);
+    ck_assert_uint_eq(report.objects, count);
+    ck_assert(report.bytes <= LIMIT && report.bytes > LIMIT / 2);
+    ck_assert_uint_ne(trace(limited, along_x(0, 0)).object, RG_NO_OBJECT);
+    for (int i = 0; i < 10; i++) {
+        ck_assert_int_eq(rg_scene_remove(limited, last), RG_OK);
+        ck_assert_int_eq(rg_scene_insert(limited, ball, NULL, &last), RG_OK);
+    }
+    ck_assert_int_eq(rg_scene_destroy(&limited), RG_OK);
+    const rg_scene_config tiny = {.size = sizeof tiny, .memory_limit = 100};
+    ck_assert_int_eq(rg_scene_create(&tiny, &limited), RG_OUT_OF_MEMORY);
+}
+END_TEST
+
 static void setup(void) {
     rg_scene_config config;
     rg_scene_config_default(&config, sizeof config);
@@ -624,6 +709,9 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, filters);
     tcase_add_test(tests, the_hosts_own_parallel_for);
     tcase_add_test(tests, ids);
+    tcase_add_test(tests, destroy_callbacks_may_use_the_scene);
+    tcase_add_test(tests, shapes_of_objects);
+    tcase_add_test(tests, a_limit_of_memory);
     tcase_add_test(tests, bulk_calls_are_whole_or_nothing);
     tcase_add_test(tests, endless_planes);
     tcase_add_test(tests, views_of_poses);
