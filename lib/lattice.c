@@ -332,18 +332,41 @@ void rgi_lattice_fetch(const rgi_lattice *lattice, const rgi_location *place) {
     for (int i = 0; i < 4; i++) __builtin_prefetch(at + (ptrdiff_t)i * RGI_LINE, 1);
 }
 
-bool rgi_lattice_step(rgi_lattice *lattice, const rgi_location *place, const double centre[3], double radius) {
-    const rgi_block *b = rgi_block_at(lattice, place->block);
-    rgi_entry e;
-    for (int a = 0; a < 3; a++) e.centre[a] = (float)((centre[a] - lattice->origin[a]) * lattice->scale);
-    if (!rgi_is_ball_block(b->kind) || !rgi_cell_holds(b->centre, STAYS * b->half, e.centre)) return false;
-    e.radius = rgi_entry_radius(e.centre, radius * lattice->scale);
+/* The entry of a ball at a new centre; false if it does not stay in its cell. */
+static bool entry_of_step(const rgi_lattice *lattice, const rgi_block *b, const double centre[3], double radius,
+                          rgi_entry *e) {
+    for (int a = 0; a < 3; a++) e->centre[a] = (float)((centre[a] - lattice->origin[a]) * lattice->scale);
+    if (!rgi_is_ball_block(b->kind) || !rgi_cell_holds(b->centre, STAYS * b->half, e->centre)) return false;
+    e->radius = rgi_entry_radius(e->centre, radius * lattice->scale);
     for (int a = 0; a < 3; a++) {
-        e.lo[a] = e.centre[a] - e.radius;
-        e.hi[a] = e.centre[a] + e.radius;
+        e->lo[a] = e->centre[a] - e->radius;
+        e->hi[a] = e->centre[a] + e->radius;
     }
+    return true;
+}
+
+bool rgi_lattice_step(rgi_lattice *lattice, const rgi_location *place, const double centre[3], double radius) {
+    rgi_entry e;
+    if (!entry_of_step(lattice, rgi_block_at(lattice, place->block), centre, radius, &e)) return false;
     stay(lattice, place, &e);
     return true;
+}
+
+rgi_stepped rgi_lattice_step_shared(rgi_lattice *lattice, const rgi_location *place, const double centre[3],
+                                    double radius) {
+    rgi_block *b = rgi_block_at(lattice, place->block);
+    rgi_entry e;
+    if (!entry_of_step(lattice, b, centre, radius, &e)) return RGI_LEFT;
+    rgi_entry_write_bounds(b, place->lane, &e);
+    rgi_lattice_grow_shared(lattice, b->parent, e.lo, e.hi);
+    if (b->previous) b = rgi_block_at(lattice, *rgi_lattice_holder(lattice, b->parent));
+    return rgi_lattice_loosened_shared(b) ? RGI_LOOSENED : RGI_MOVED;
+}
+
+void rgi_lattice_tighten(rgi_lattice *lattice, const rgi_location *place) {
+    const rgi_block *b = rgi_block_at(lattice, place->block);
+    rgi_block *first = rgi_block_at(lattice, *rgi_lattice_holder(lattice, b->parent));
+    rgi_lattice_loosened(lattice, b->parent, first, true);
 }
 
 /* What no cell can hold, or no block has the kind for, is as right in the list of the unbounded. */

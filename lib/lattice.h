@@ -178,6 +178,21 @@ void rgi_lattice_fetch(const rgi_lattice *lattice, const rgi_location *place);
  */
 bool rgi_lattice_step(rgi_lattice *lattice, const rgi_location *place, const double centre[3], double radius);
 
+/** What rgi_lattice_step_shared did. */
+typedef enum rgi_stepped {
+    RGI_LEFT,    /* nothing: the object leaves its cell */
+    RGI_MOVED,   /* moved it */
+    RGI_LOOSENED /* moved it, and rgi_lattice_tighten is to be called for its place when all are done */
+} rgi_stepped;
+
+/**
+ * As rgi_lattice_step, for several threads at once, each with objects of its own. Boxes only grow meanwhile; nobody
+ * else may look at the lattice.
+ */
+rgi_stepped rgi_lattice_step_shared(rgi_lattice *lattice, const rgi_location *place, const double centre[3],
+                                    double radius);
+void rgi_lattice_tighten(rgi_lattice *lattice, const rgi_location *place);
+
 void rgi_lattice_remove(rgi_lattice *lattice, uint32_t slot);
 
 /** Whether an object can get these bounds and keep a cell even without memory: others may join the unbounded. */

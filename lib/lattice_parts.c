@@ -210,6 +210,54 @@ void rgi_lattice_grow(rgi_lattice *lattice, uint32_t parent, const float lo[3], 
     rgi_bounds_unite(lattice->lo, lattice->hi, lo, hi);
 }
 
+/* Returns whether it had to. */
+static bool lower(float *bound, float to) {
+    float old;
+    __atomic_load(bound, &old, __ATOMIC_RELAXED);
+    bool must = to < old;
+    while (to < old) {
+        if (__atomic_compare_exchange(bound, &old, &to, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) break;
+    }
+    return must;
+}
+
+static bool raise(float *bound, float to) {
+    float old;
+    __atomic_load(bound, &old, __ATOMIC_RELAXED);
+    bool must = to > old;
+    while (to > old) {
+        if (__atomic_compare_exchange(bound, &old, &to, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) break;
+    }
+    return must;
+}
+
+/*
+ * Whoever finds a box large enough may stop although another thread that has made it so may not have come to the
+ * boxes above yet: that one will, and on each side they are then as large as this box is there.
+ */
+void rgi_lattice_grow_shared(rgi_lattice *lattice, uint32_t parent, const float lo[3], const float hi[3]) {
+    bool grows = true;
+    while (parent != RGI_ROOT && grows) {
+        rgi_node *n = rgi_node_at(lattice, parent >> 4);
+        uint32_t lane = parent & 15;
+        parent = n->parent;
+        if (lane == RGI_OWN) continue;
+        grows = false;
+        for (int a = 0; a < 3; a++) {
+            grows |= lower(&n->lo[a][lane], lo[a]);
+            grows |= raise(&n->hi[a][lane], hi[a]);
+        }
+    }
+    for (int a = 0; a < 3 && grows; a++) {
+        (void)lower(&lattice->lo[a], lo[a]);
+        (void)raise(&lattice->hi[a], hi[a]);
+    }
+}
+
+bool rgi_lattice_loosened_shared(rgi_block *first) {
+    return __atomic_add_fetch(&first->stale, 1, __ATOMIC_RELAXED) == STALE_LEAF;
+}
+
 /* Takes the box around a chain in; false if it is too long to look at. */
 static bool unite_chain(const rgi_lattice *lattice, rgi_ref chain, float lo[3], float hi[3]) {
     if (chain && rgi_block_at(lattice, chain)->length > LONG_TO_TIGHTEN) return false;

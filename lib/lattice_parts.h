@@ -42,6 +42,13 @@ void rgi_lattice_get_box(const rgi_lattice *lattice, uint32_t parent, float lo[3
 /** Boxes from `parent` up to the root take a box in, as far as they must. */
 void rgi_lattice_grow(rgi_lattice *lattice, uint32_t parent, const float lo[3], const float hi[3]);
 
+/** The same while other threads do it, too. */
+void rgi_lattice_grow_shared(rgi_lattice *lattice, uint32_t parent, const float lo[3], const float hi[3]);
+
+/** Counts, while other threads do, too, that an object of the chain has moved. Returns whether its box is to be made
+ * tight; of many calls one is told so. */
+bool rgi_lattice_loosened_shared(rgi_block *first);
+
 /** Boxes of floats. */
 void rgi_bounds_unite(float lo[3], float hi[3], const float lo2[3], const float hi2[3]);
 void rgi_bounds_empty(float lo[3], float hi[3]);

@@ -192,21 +192,9 @@ rg_result rg_scene_insert_many(rg_scene *scene, const rg_insert_views *given, ui
     return rgi_scene_end_change(scene, &frame, insert_all(scene, &views, count, objects));
 }
 
-/* Bits of the grids that a call on many has touched: their rules are applied once, at its end. */
-typedef struct touched {
-    uint32_t bits[RGI_GRIDS / 32];
-} touched;
-
-static void touch(touched *t, uint32_t grid) {
-    t->bits[grid / 32] |= 1u << grid % 32;
-}
-static bool is_touched(const touched *t, uint32_t grid) {
-    return t->bits[grid / 32] >> grid % 32 & 1;
-}
-
-static void settle(rg_scene *scene, const touched *t, uint64_t count) {
+void rgi_settle_touched(rg_scene *scene, const rgi_touched *t, uint64_t count) {
     for (uint32_t i = 0; i < scene->grid_places; i++) {
-        if (is_touched(t, i)) rgi_any_grid_settle(scene->grids[i].grid, scene, count);
+        if (rgi_is_touched(t, i)) rgi_any_grid_settle(scene->grids[i].grid, scene, count);
     }
 }
 
@@ -216,15 +204,9 @@ static rg_result find_nth(const rg_scene *scene, const rg_input *objects, uint64
     return result;
 }
 
-/*
- * While a call on many checks its objects, a free bit of their grid's number marks those it has met: so an id given
- * twice is known without memory for it. The marks are taken off again whatever comes out.
- */
-enum { MARK = RGI_GRIDS };
-
 static void unmark(rg_scene *scene, const rg_input *objects, uint64_t count) {
     for (uint64_t i = 0; i < count; i++)
-        rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0)))->grid &= ~(uint32_t)MARK;
+        rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0)))->grid &= ~(uint32_t)RGI_MARK;
 }
 
 /** A move that was checked, for the second time over: what took time to find out. */
@@ -239,7 +221,7 @@ typedef struct checked_move {
 /** What the moves of a call take. */
 typedef struct move_need {
     rgi_grid_need grids[RGI_GRIDS];
-    touched touched;
+    rgi_touched touched;
     uint64_t linears;
 } move_need;
 
@@ -247,7 +229,7 @@ static rg_result check_move(rg_scene *scene, const rg_pose_views *poses, uint64_
                             move_need *need) {
     rgi_placing p;
     rgi_object *object = rgi_scene_object(scene, move->slot);
-    uint32_t grid = object->grid & (MARK - 1);
+    uint32_t grid = object->grid & (RGI_MARK - 1);
     rg_result result = place_view(scene, poses, i, object->shape, object, &p);
     if (result) {
         rgi_fail_prefix("object %" PRIu64 " of the call: ", i);
@@ -256,10 +238,10 @@ static rg_result check_move(rg_scene *scene, const rg_pose_views *poses, uint64_
     move->bound = p.bound;
     move->reach = p.reach;
     move->inside = rgi_any_grid_need_move(scene->grids[grid].grid, scene, move->slot, &p.bound, &need->grids[grid]);
-    move->whole = p.is_linear || object->linear != RGI_NONE || (object->grid & MARK);
+    move->whole = p.is_linear || object->linear != RGI_NONE || (object->grid & RGI_MARK);
     need->linears += p.is_linear && object->linear == RGI_NONE;
-    touch(&need->touched, grid);
-    object->grid |= MARK;
+    rgi_touch(&need->touched, grid);
+    object->grid |= RGI_MARK;
     return RG_OK;
 }
 
@@ -276,7 +258,7 @@ static rg_result prepare_move(rg_scene *scene, const rg_input *objects, const rg
     unmark(scene, objects, marked);
     if (!result) result = rgi_slots_reserve(&scene->linears, need->linears);
     for (uint32_t g = 0; g < scene->grid_places && !result; g++) {
-        if (is_touched(&need->touched, g)) result = rgi_any_grid_reserve(scene->grids[g].grid, &need->grids[g]);
+        if (rgi_is_touched(&need->touched, g)) result = rgi_any_grid_reserve(scene->grids[g].grid, &need->grids[g]);
     }
     return result;
 }
@@ -301,69 +283,17 @@ static rg_result make_move(rg_scene *scene, const rg_pose_views *poses, uint64_t
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------ balls to new places */
-
-/* Objects, and then their blocks, are fetched so many ahead of the one that is moved. */
-enum { AHEAD = 16 };
-
-/* Whether all objects are balls in lattices and all positions such that moving them can't fail. An id that is none of
- * the scene's says no, too: the long way finds it again and names it. */
-static bool are_quick(const rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count) {
-    if (poses->column[0].x || poses->scale.data) return false;
-    for (uint64_t i = 0; i < count; i++) {
-        rg_object id = rgi_load_integer(objects, i, 0);
-        uint32_t slot = RG_OBJECT_SLOT(id);
-        double position[3];
-        if (i + AHEAD < count) {
-            uint32_t later = RG_OBJECT_SLOT(rgi_load_integer(objects, i + AHEAD, 0));
-            if (later < scene->objects.used) __builtin_prefetch(rgi_scene_object(scene, later));
-        }
-        if (slot >= scene->objects.used) return false;
-        const rgi_object *object = rgi_scene_object(scene, slot);
-        rgi_load3(&poses->position, i, position);
-        if (!object->shape || object->generation != id >> 32 || !rgi_is_quick(scene, slot, position)) return false;
-    }
-    return true;
-}
-
-static void move_quickly(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count,
-                         touched *grids) {
-    for (uint64_t i = 0; i < count; i++) {
-        uint32_t slot = RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0));
-        rgi_object *object = rgi_scene_object(scene, slot);
-        double position[3];
-        if (i + 2 * AHEAD < count)
-            __builtin_prefetch(rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i + 2 * AHEAD, 0))));
-        if (i + AHEAD < count) {
-            uint32_t later = RG_OBJECT_SLOT(rgi_load_integer(objects, i + AHEAD, 0));
-            const rgi_any_grid *grid = scene->grids[rgi_scene_object(scene, later)->grid].grid;
-            rgi_lattice_fetch(&grid->lattice, rgi_any_grid_place(grid, scene, later));
-        }
-        rgi_load3(&poses->position, i, position);
-        touch(grids, object->grid);
-        if (rgi_step(scene, slot, position)) continue;
-        rgi_placing p;
-        (void)rgi_place_at(scene, object, position, &p);
-        (void)rgi_move_one(scene, slot, &p);
-    }
-}
-
 static rg_result move_all(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count) {
     move_need need;
     checked_move *moves = NULL;
     if (count == 0) return RG_OK;
-    if (are_quick(scene, objects, poses, count)) {
-        memset(&need.touched, 0, sizeof need.touched);
-        move_quickly(scene, objects, poses, count, &need.touched);
-        settle(scene, &need.touched, count);
-        return RG_OK;
-    }
+    if (rgi_move_balls(scene, objects, poses, count)) return RG_OK;
     rg_result result = rgi_allocate(&scene->memory, count, sizeof *moves, "moving many objects", &moves);
     if (result) return result;
     result = prepare_move(scene, objects, poses, count, moves, &need);
     for (uint64_t i = 0; i < count && !result; i++) result = make_move(scene, poses, i, &moves[i]);
     rgi_release(&scene->memory, moves, count, sizeof *moves);
-    if (!result) settle(scene, &need.touched, count);
+    if (!result) rgi_settle_touched(scene, &need.touched, count);
     return result;
 }
 
@@ -385,27 +315,27 @@ static rg_result mark_all(rg_scene *scene, const rg_input *objects, uint64_t cou
         rg_result result = find_nth(scene, objects, *marked, &slot);
         if (result) return result;
         rgi_object *object = rgi_scene_object(scene, slot);
-        if (object->grid & MARK)
+        if (object->grid & RGI_MARK)
             return rgi_fail(RG_INVALID_ID, "object %" PRIu64 " of the call: 0x%" PRIx64 " is given twice", *marked,
                             rgi_object_id(object, slot));
-        object->grid |= MARK;
+        object->grid |= RGI_MARK;
     }
     return RG_OK;
 }
 
 static rg_result remove_all(rg_scene *scene, const rg_input *objects, uint64_t count, rg_shape **gone) {
     uint64_t marked;
-    touched grids;
+    rgi_touched grids;
     memset(&grids, 0, sizeof grids);
     rg_result result = mark_all(scene, objects, count, &marked);
     unmark(scene, objects, marked);
     if (result) return result;
     for (uint64_t i = 0; i < count; i++) {
         uint32_t slot = RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0));
-        touch(&grids, rgi_scene_object(scene, slot)->grid);
+        rgi_touch(&grids, rgi_scene_object(scene, slot)->grid);
         rgi_shape_put_aside(rgi_remove_one(scene, slot), gone);
     }
-    settle(scene, &grids, count);
+    rgi_settle_touched(scene, &grids, count);
     return RG_OK;
 }
 

@@ -213,7 +213,9 @@ rg_result rg_scene_move(rg_scene *scene, rg_object id, const rg_pose *pose) {
 
 bool rgi_is_quick(const rg_scene *scene, uint32_t slot, const double position[3]) {
     const rgi_object *object = rgi_scene_object(scene, slot);
-    const rgi_any_grid *grid = scene->grids[object->grid].grid;
+    /* Another thread may be marking it, see rgi_move_balls. */
+    uint32_t index = __atomic_load_n(&object->grid, __ATOMIC_RELAXED) & (RGI_MARK - 1);
+    const rgi_any_grid *grid = scene->grids[index].grid;
     for (int a = 0; a < 3; a++) {
         if (!(fabs(position[a]) <= RG_COORDINATE_MAX)) return false;
     }

@@ -37,6 +37,30 @@ rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot);
 rg_result rgi_insert_one(rg_scene *scene, rg_shape *shape, const rgi_placing *placing, uint32_t mask, uint32_t grid,
                          rg_object *id);
 
+/*
+ * While a call on many checks its objects, a free bit of their grid's number marks those it has met: so an id given
+ * twice is known without memory for it. The marks are taken off again whatever comes out.
+ */
+enum { RGI_MARK = RGI_GRIDS };
+
+/** Bits of the grids that a call on many has touched: their rules are applied once, at its end. */
+typedef struct rgi_touched {
+    uint32_t bits[RGI_GRIDS / 32];
+} rgi_touched;
+
+static inline void rgi_touch(rgi_touched *t, uint32_t grid) {
+    t->bits[grid / 32] |= 1u << grid % 32;
+}
+
+static inline bool rgi_is_touched(const rgi_touched *t, uint32_t grid) {
+    return t->bits[grid / 32] >> grid % 32 & 1;
+}
+
+void rgi_settle_touched(rg_scene *scene, const rgi_touched *t, uint64_t count);
+
+/** Moves balls of lattices whose moves can't fail. False: not all are, and nothing has been done. */
+bool rgi_move_balls(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count);
+
 /** Whether an object is a ball in a lattice, and can be moved to a position without fail. */
 bool rgi_is_quick(const rg_scene *scene, uint32_t slot, const double position[3]);
 
