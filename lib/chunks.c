@@ -64,6 +64,7 @@ rg_result rgi_chunks_add(rgi_chunks *chunks, const char *purpose) {
     } else {
         result = rgi_allocate(chunks->memory, 1, slab_bytes(chunks, number), purpose, &chunks->at[number]);
         if (result) return result;
+        if (chunks->bulk) rgi_wish_huge_pages(chunks->memory, chunks->at[number], slab_bytes(chunks, number));
         chunks->slab = number;
     }
     chunks->count++;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Chunks of memory of one size, by number, whose addresses never change. Few chunks are allocated one by one; once
- * they are many, in slabs of a huge page each, so that a large scene costs few misses of the processor's address
- * tables.
+ * they are many, in slabs of as many huge pages as fit, so that a large scene costs few misses of the processor's
+ * address tables.
  */
 #ifndef RAYGRID_LIB_CHUNKS_H
 #define RAYGRID_LIB_CHUNKS_H
@@ -18,6 +18,7 @@ typedef struct rgi_chunks {
     uint32_t room;  /* pointers that `at` has room for */
     uint32_t slab;  /* number of the first chunk of the last slab */
     uint32_t bytes; /* of a chunk */
+    bool bulk;      /* they are added for many records at once: on huge pages */
     uint32_t freed; /* chunks that were given back, from the first on, see rgi_chunks_free_some */
 } rgi_chunks;
 

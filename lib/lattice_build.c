@@ -148,8 +148,10 @@ rg_result rgi_lattice_build(rgi_lattice *lattice, rgi_bound_source source, const
             result = rgi_lattice_insert_unbounded(lattice, slot);
         }
     }
+    lattice->arena.chunks.bulk = true;
     if (!result && bounded && !build(lattice, entries, entries + count, bounded, RGI_ROOT))
         result = rgi_fail(RG_OUT_OF_MEMORY, "no memory for a grid of %llu objects", (unsigned long long)count);
+    lattice->arena.chunks.bulk = false;
     if (!result) lattice->count = bounded;
     rgi_release(lattice->memory, entries, 2 * count, sizeof *entries);
     return result;

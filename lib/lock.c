@@ -3,9 +3,9 @@
 
 enum {
     /* Tries before a thread goes to sleep, which costs some ten microseconds to wake from. A reader waits for a
-     * change, mostly well below a microsecond; a writer for readers that are done with some rays each. */
+     * change, mostly well below a microsecond; a writer for readers that have some rays to do yet, up to some 50. */
     READER_SPINS = 100,
-    WRITER_SPINS = 1000
+    WRITER_SPINS = 3000
 };
 
 void rgi_lock_init(rgi_lock *lock) {

@@ -13,16 +13,19 @@
 /* A cache line: no two blocks share one, and any SIMD load is aligned. */
 enum { ALIGNMENT = 64 };
 
-/* Large blocks are put on huge pages where the system has them to give: a wish, whose failure changes nothing. */
 static void *default_allocate(void *user, size_t size, size_t alignment) {
     void *block;
-    bool large = size >= RGI_HUGE_PAGE;
     (void)user;
-    if (posix_memalign(&block, large ? RGI_HUGE_PAGE : alignment, size) != 0) return NULL;
+    return posix_memalign(&block, size >= RGI_HUGE_PAGE ? RGI_HUGE_PAGE : alignment, size) ? NULL : block;
+}
+
+void rgi_wish_huge_pages(const rgi_memory *memory, void *block, size_t bytes) {
 #ifdef MADV_HUGEPAGE
-    if (large) (void)madvise(block, size, MADV_HUGEPAGE);
+    if (memory->allocator.allocate == default_allocate && bytes >= RGI_HUGE_PAGE)
+        (void)madvise(block, bytes, MADV_HUGEPAGE);
+#else
+    (void)memory, (void)block, (void)bytes;
 #endif
-    return block;
 }
 
 static void default_release(void *user, void *block, size_t size, size_t alignment) {

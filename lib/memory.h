@@ -24,6 +24,13 @@ rg_result rgi_memory_init(rgi_memory *memory, const rg_allocator *allocator);
  */
 rg_result rgi_allocate(rgi_memory *memory, uint64_t count, size_t size, const char *purpose, void *out);
 
+/**
+ * Asks for huge pages for a block that was just allocated: a wish, whose failure changes nothing. Not for what single
+ * changes allocate: where the system has no huge page at hand, it may take tens of milliseconds to make one, at the
+ * first touch.
+ */
+void rgi_wish_huge_pages(const rgi_memory *memory, void *block, size_t bytes);
+
 /** Gives back what rgi_allocate returned for the same count and size. NULL is ignored. */
 void rgi_release(rgi_memory *memory, void *block, uint64_t count, size_t size);
 

@@ -10,7 +10,7 @@
 
 enum {
     QUANTUM = 256, /* objects that a worker takes before it looks for other work */
-    AT_LEAST = 16, /* and before it lets a change in that waits: some 10 us */
+    AT_LEAST = 6,  /* and before it lets a change in that waits: some 10 us if none of them is in the caches */
     /* In units of an insert: */
     MEMBERS_SURVEYED = 16,
     CELLS_CLEARED = 2048

@@ -27,6 +27,7 @@ rg_result rgi_slots_reserve(rgi_slots *slots, uint64_t count) {
                         slots->purpose, RGI_NONE - 1);
     uint32_t chunk_count = (uint32_t)((needed + RGI_CHUNK - 1) >> RGI_CHUNK_BITS);
     rg_result result = RG_OK;
+    slots->chunks.bulk = count > RGI_CHUNK;
     while (!result && slots->chunks.count < chunk_count) result = rgi_chunks_add(&slots->chunks, slots->purpose);
     return result;
 }
