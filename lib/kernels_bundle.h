@@ -91,7 +91,10 @@ static void meet(const rgi_bundle *b, rgi_meeting *m) {
         double h = sqrt(dd * rgi_max(inside, 0));
         double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - r * r;
         double q = od > 0 ? -od - h : -od + h;
-        double far_from_zero = q / dd, near_zero = q != 0 ? c / q : 0;
+        double far_from_zero = q / dd;
+        int rounding = fabs(c) > 2 * (q * far_from_zero);
+        double over = rounding ? (od > 0 ? -od + h : -od - h) : c, under = rounding ? dd : q;
+        double near_zero = under != 0 ? over / under : 0;
         double first = shift[i] + (od > 0 ? far_from_zero : near_zero);
         double second = shift[i] + (od > 0 ? near_zero : far_from_zero);
         int first_in = (first >= b->t_min[i]) & (first <= b->t_max[i]);

@@ -5,7 +5,9 @@
 /*
  * E. Haines, J. Guenther, T. Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems
  * (2019), chapter 7. The discriminant is taken from the foot of the perpendicular (section 7.2): no cancellation far
- * away. The root that would cancel is c/q (section 7.3), so an origin on the sphere gives exactly 0.
+ * away. The root that would cancel is c/q (section 7.3), so an origin on the sphere gives exactly 0. It can't be
+ * farther than the other one, q/dd: where it is, at the foot of a tangent, c and q are nothing but rounding, and the
+ * root as it stands is as good as h.
  */
 bool rgi_sphere_roots(double radius, const double origin[3], const double direction[3], double roots[2]) {
     double dd = rgi_dot(direction, direction);
@@ -21,6 +23,7 @@ bool rgi_sphere_roots(double radius, const double origin[3], const double direct
     double q = b > 0 ? -b - h : -b + h;
     double far_from_zero = q / dd;
     double near_zero = q != 0 ? c / q : 0;
+    if (fabs(c) > 2 * (q * far_from_zero)) near_zero = (b > 0 ? -b + h : -b - h) / dd;
     roots[0] = b > 0 ? far_from_zero : near_zero;
     roots[1] = b > 0 ? near_zero : far_from_zero;
     return true;

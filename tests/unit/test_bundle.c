@@ -80,8 +80,15 @@ START_TEST(balls_met_alike) {
             double away = machine_below(4) ? 10 * unit_random() : pow(10, 12 * unit_random());
             m.radius[i] = pow(10, 6 * unit_random() - 3) * (fabs(b.origin[0][i]) + 1e-9);
             double beside = m.radius[i] * (machine_below(4) ? unit_random() : 1 - pow(2, -50 * unit_random()));
-            for (int a = 0; a < 3; a++)
-                m.centre[a][i] = b.origin[a][i] + away * m.radius[i] * b.direction[a][i] + (a == round % 3) * beside;
+            const double d[3] = {b.direction[0][i], b.direction[1][i], b.direction[2][i]};
+            double axis[3] = {round % 3 == 0, round % 3 == 1, round % 3 == 2}, across[3];
+            /* Tangents, too: across the way, in every other round. */
+            rgi_cross(d, axis, across);
+            double length = round % 2 ? sqrt(rgi_dot(across, across)) : 0;
+            for (int a = 0; a < 3; a++) {
+                double aside = length > 0 ? across[a] / length : axis[a];
+                m.centre[a][i] = b.origin[a][i] + away * m.radius[i] * d[a] + aside * beside;
+            }
         }
         k->meet(&b, &m);
         for (int i = 0; i < RGI_PACKET; i++) {

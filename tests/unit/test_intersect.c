@@ -30,6 +30,31 @@ START_TEST(sphere_roots_are_exact_where_the_numbers_are) {
 }
 END_TEST
 
+/*
+ * Rays that start near the foot of a tangent, as those from far away do once their origin was moved: the chord is at
+ * most what rounding the origin makes of it, sqrt(2^-50), and so far may a hit be from the foot, no farther.
+ */
+START_TEST(tangents_are_hit_near_their_foot) {
+    int hits = 0;
+    for (int round = 0; round < 200000; round++) {
+        double foot[3], guide[3], way[3];
+        rgi_candidate c;
+        for (int i = 0; i < 3; i++) foot[i] = unit_random() - 0.5, guide[i] = unit_random() - 0.5;
+        double length = sqrt(rgi_dot(foot, foot));
+        for (int i = 0; i < 3; i++) foot[i] /= length;
+        rgi_cross(foot, guide, way);
+        rgi_local_ray ray = ray_at(foot[0], foot[1], foot[2], way[0], way[1], way[2]);
+        ray.t_min = -INFINITY;
+        if (!rgi_sphere_intersect(1, &ray, &c)) continue;
+        hits++;
+        MUST(fabs(c.t) * sqrt(rgi_dot(way, way)) < 0x1p-24);
+        ray.sides = RGI_BACK;
+        MUST(rgi_sphere_intersect(1, &ray, &c) && fabs(c.t) * sqrt(rgi_dot(way, way)) < 0x1p-24);
+    }
+    ck_assert_int_gt(hits, 50000);
+}
+END_TEST
+
 START_TEST(shift_counts_in_range_and_result) {
     rgi_candidate c;
     rgi_local_ray ray = ray_at(-3, 0, 0, 1, 0, 0);
@@ -164,6 +189,7 @@ Suite *unit_suite(void) {
     Suite *suite = suite_create("intersect");
     TCase *tests = tcase_create("intersect");
     tcase_add_test(tests, sphere_roots_are_exact_where_the_numbers_are);
+    tcase_add_test(tests, tangents_are_hit_near_their_foot);
     tcase_add_test(tests, shift_counts_in_range_and_result);
     tcase_add_test(tests, sides);
     tcase_add_test(tests, box_edges_and_corners_belong_to_it);
