@@ -2,7 +2,8 @@
 /*
  * compare.c: is an answer of the library right to the bounds of trace.h?
  *
- * Let e = 2^-40 k R be what the bound lets an object's surface be off, k the condition of its linear part.
+ * Let e be what the bound lets an object's surface be off: of trace.h's 2^-40 k R, k the condition of its linear
+ * part.
  *   - A hit is certain if the ray itself and eight rays moved aside by e, all around, each have one.
  *   - A reported hit is possible if one of the nine rays has it; or if the ray's point at the reported t lies within
  *     e of the reported primitive (which is the same as an error of e / |cos| in t), and all fits the nearest point
@@ -47,15 +48,15 @@ static bool is_too_far(const object *o, const rg_ray *ray) {
  * no near point to start from, so what a double resolves at their distance must do.
  */
 static real surface_bound(const object *o, const rg_ray *ray) {
-    real part = isfinite(o->radius) ? 0x1p-100L : 0x1p-48L;
-    return 0x1p-40L * o->condition * o->world_radius + part * distance_to(o, ray);
+    real part = isfinite(o->radius) ? o->bound.way : fmaxl(o->bound.way, 0x1p-48L);
+    return o->bound.radius * o->condition * o->world_radius + part * distance_to(o, ray) + o->bound.length;
 }
 
 /* What trace.h allows t to be off, in world length. The last term is the spacing of the smallest doubles. */
 static real t_bound(const object *o, const rg_ray *ray, real t, real cosine) {
     real unit = direction_length(ray), distance = fabsl(t) * unit;
     if (isfinite(o->radius)) distance = fmaxl(distance, distance_to(o, ray));
-    return 0x1p-50L * distance + surface_bound(o, ray) / fabsl(cosine) + 0x1p-1074L * unit;
+    return o->bound.t * distance + surface_bound(o, ray) / fabsl(cosine) + 0x1p-1074L * unit;
 }
 
 /* The largest of the surface in the world, or more. */
@@ -204,6 +205,7 @@ typedef struct match {
     const judge *j;
     const line *at;
     const rg_hit *got;
+    bool place; /* nothing but the place is judged */
     bool found;
 } match;
 
@@ -212,14 +214,15 @@ static void try_match(void *context, const crossing *c) {
     match *m = context;
     const judge *j = m->j;
     real normal[3], cosine = cosine_at(j->o, j->ray, c, normal), bound = t_bound(j->o, j->ray, c->t, cosine);
-    if (culled(j->cull, side_of(m->at, c)) || c->primitive != m->got->primitive) return;
-    if (!(fabsl(c->t - m->got->t) * j->unit <= bound)) return;
+    if (culled(j->cull, side_of(m->at, c)) || !(fabsl(c->t - m->got->t) * j->unit <= bound)) return;
+    if (m->place) m->found = true;
+    if (m->place || c->primitive != m->got->primitive) return;
     if (difference(normal, m->got->normal) > normal_bound(j->o, j->ray, cosine)) return;
     if (right_weights(j->o, c, m->got, bound)) m->found = true;
 }
 
-static bool found_by_a_ray(const judge *j, const rg_hit *got) {
-    match m = {.j = j, .got = got};
+static bool found_by_a_ray(const judge *j, const rg_hit *got, bool place) {
+    match m = {.j = j, .got = got, .place = place};
     for (int k = 0; k < SAMPLES && !m.found; k++) {
         line at = line_to_object(j->o, j->ray, k ? j->aside[k] : NULL);
         m.at = &at;
@@ -247,6 +250,25 @@ static const char *impossible(const object *o, const rg_ray *ray, rg_cull cull, 
     if (fabsl(cosine) > 0x1p-30L + 8 * sqrtl(curvature(o) * e) && culled(cull, side_of(&at, &c))) return "culled";
     if (!(difference(normal, got->normal) <= normal_bound(o, ray, 0.5L))) return "normal";
     return right_weights(o, &c, got, bound) ? NULL : "u or v";
+}
+
+/* The same of a place alone, on whichever primitive it is. */
+static bool has_surface_at(const object *o, const rg_ray *ray, real t) {
+    line at = line_to_object(o, ray, NULL);
+    real point[3], e = surface_bound(o, ray), along = t_bound(o, ray, t, 1) - e;
+    size_t primitives = o->shape->kind == RG_SHAPE_MESH ? o->shape->triangle_count : 6;
+    for (int i = 0; i < 3; i++) point[i] = at.base[i] + (t - at.t_base) * at.direction[i];
+    for (uint32_t p = 0; p < primitives; p++) {
+        place near;
+        real apart[3], normal[3];
+        if (!nearest_place(o->shape, p, point, &near)) continue;
+        for (int i = 0; i < 3; i++) apart[i] = near.point[i] - point[i];
+        crossing c = {.normal = {near.normal[0], near.normal[1], near.normal[2]}};
+        real cosine = cosine_at(o, ray, &c, normal);
+        if (near.thickness * o->stretch <= 8 * e && length_in_world(o, apart) <= 4 * e) return true;
+        if (is_near(o, apart, near.normal, cosine, 1.5L * e, along)) return true;
+    }
+    return false;
 }
 
 /* --------------------------------------------------------------------------------------------- the verdict */
@@ -282,7 +304,7 @@ static const char *judge_hit(const reference_scene *scene, const rg_ray *ray, rg
     /* A linear part of such a condition leaves nothing that a bound could say. */
     if (surface_bound(o, ray) >= o->world_radius / 4 && o->condition > 0x1p38L) return NULL;
     judge j = judge_of(o, ray, cull);
-    return found_by_a_ray(&j, got) ? NULL : impossible(o, ray, cull, got);
+    return found_by_a_ray(&j, got, false) ? NULL : impossible(o, ray, cull, got);
 }
 
 static void fill_error(const reference_scene *scene, const rg_ray *ray, const reference_hit *want, const rg_hit *got,
@@ -333,6 +355,31 @@ reference_verdict reference_compare(const reference_scene *scene, const rg_ray *
     what = judge_hit(scene, ray, cull, got);
     if (what) return verdict(error, what);
     return verdict(error, objection(scene, ray, cull, find_object(scene, got->object), got->t));
+}
+
+static const char *judge_place(const reference_scene *scene, const rg_ray *ray, const rg_hit *got) {
+    const object *o = find_object(scene, got->object);
+    if (!o) return "no such object";
+    if (!(got->t >= ray->t_min && got->t <= ray->t_max)) return "t out of the ray's range";
+    judge j = judge_of(o, ray, RG_CULL_NONE);
+    if (!found_by_a_ray(&j, got, true) && !has_surface_at(o, ray, got->t)) return "no surface there";
+    return objection(scene, ray, RG_CULL_NONE, o, got->t);
+}
+
+reference_verdict reference_compare_place(const reference_scene *scene, const rg_ray *ray, const rg_hit *got,
+                                          reference_error *error) {
+    reference_hit want;
+    rg_ray near = within_reach(ray);
+    *error = (reference_error){.what = ""};
+    bool hit = reference_trace(scene, &near, RG_CULL_NONE, &want);
+    if (got->object == RG_NO_OBJECT) {
+        return hit ? verdict(error, objection(scene, &near, RG_CULL_NONE, NULL, HUGE_VALL)) : REFERENCE_EQUAL;
+    }
+    if (hit && want.object == got->object) {
+        fill_error(scene, &near, &want, got, error);
+        if (got->t >= near.t_min && got->t <= near.t_max && error->t <= error->t_bound) return REFERENCE_EQUAL;
+    }
+    return verdict(error, judge_place(scene, &near, got));
 }
 
 /* ------------------------------------------------------------------------------------------------ occluded */

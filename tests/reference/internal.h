@@ -8,7 +8,20 @@
 #include <float.h>
 #include <math.h>
 
-typedef long double real;
+typedef reference_real real;
+
+#ifdef REFERENCE_QUAD
+#include <quadmath.h>
+#define REAL_DIGITS FLT128_MANT_DIG
+#define fabsl fabsq
+#define fminl fminq
+#define fmaxl fmaxq
+#define sqrtl sqrtq
+#define sinl sinq
+#define cosl cosq
+#else
+#define REAL_DIGITS LDBL_MANT_DIG
+#endif
 
 /** A ray in a shape's frame: the points base + s * direction, which the world ray has at t = t_base + s. */
 typedef struct line {
@@ -48,6 +61,7 @@ typedef struct object {
     real stretch, condition; /* of it: its 2-norm, and that times the 2-norm of the inverse */
     real centre[3], radius;  /* a sphere around position + centre that holds the object */
     real world_radius;       /* of the object around its position: the R of trace.h */
+    reference_bound bound;   /* that it is judged by */
 } object;
 
 struct reference_scene {
@@ -56,6 +70,7 @@ struct reference_scene {
     size_t count, capacity;
     uint32_t *index_of_slot; /* slot -> index in objects; slots that hold none have UINT32_MAX */
     size_t slots;
+    reference_bound bound; /* of objects inserted from now on */
 };
 
 /* vectors */

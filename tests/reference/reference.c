@@ -26,7 +26,13 @@ static void *resized(void *memory, size_t bytes) {
 }
 
 reference_scene *reference_create(void) {
-    return reference_allocate(1, sizeof(reference_scene));
+    reference_scene *scene = reference_allocate(1, sizeof *scene);
+    scene->bound = (reference_bound){0x1p-40, 0x1p-100, 0, 0x1p-50};
+    return scene;
+}
+
+void reference_set_bound(reference_scene *scene, const reference_bound *bound) {
+    scene->bound = *bound;
 }
 
 void reference_destroy(reference_scene *scene) {
@@ -72,8 +78,7 @@ static void make_slot(reference_scene *scene, uint32_t slot) {
     scene->slots = slots;
 }
 
-void reference_insert(reference_scene *scene, rg_object id, const reference_shape *shape, const rg_pose *pose,
-                      uint32_t mask) {
+static object *make_object(reference_scene *scene, rg_object id) {
     uint32_t slot = RG_OBJECT_SLOT(id);
     if (id == RG_NO_OBJECT) give_up("RG_NO_OBJECT can't be inserted");
     make_slot(scene, slot);
@@ -82,10 +87,26 @@ void reference_insert(reference_scene *scene, rg_object id, const reference_shap
         scene->capacity = 2 * scene->capacity + 64;
         scene->objects = resized(scene->objects, scene->capacity * sizeof *scene->objects);
     }
-    object *o = &scene->objects[scene->count];
-    *o = (object){.id = id, .shape = shape, .pose = *pose, .mask = mask};
+    scene->index_of_slot[slot] = (uint32_t)scene->count;
+    return &scene->objects[scene->count++];
+}
+
+void reference_insert(reference_scene *scene, rg_object id, const reference_shape *shape, const rg_pose *pose,
+                      uint32_t mask) {
+    object *o = make_object(scene, id);
+    *o = (object){.id = id, .shape = shape, .pose = *pose, .mask = mask, .bound = scene->bound};
     prepare_object(o);
-    scene->index_of_slot[slot] = (uint32_t)scene->count++;
+}
+
+void reference_share(reference_scene *scene, const reference_scene *from, rg_object id) {
+    *make_object(scene, id) = *known_object_const(from, id);
+}
+
+void reference_clear(reference_scene *scene) {
+    for (size_t i = 0; i < scene->count; i++) {
+        scene->index_of_slot[RG_OBJECT_SLOT(scene->objects[i].id)] = NO_INDEX;
+    }
+    scene->count = 0;
 }
 
 void reference_move(reference_scene *scene, rg_object id, const rg_pose *pose) {

@@ -5,7 +5,9 @@
  * It shares no code and no data structure with the library: of the public headers it uses only the plain types
  * (poses, rays, hits), and it links nothing of them. What it promises rests on a 64-bit mantissa (x87) or better;
  * where long double is the same as double it still compiles and runs, but its own rounding then comes near the bounds
- * of trace.h, most of all for linear parts of high condition, and its verdicts there mean nothing.
+ * of trace.h, most of all for linear parts of high condition, and its verdicts there mean nothing. Compiled with
+ * REFERENCE_QUAD it computes with the 113 bits of __float128, much slower: then even an error of a thousandth of an
+ * ulp of double can be told.
  *
  * How a far ray keeps its digits: for each object the ray's origin is first moved along the ray to the point nearest
  * to that object, with the products and sums of that one step carried in twice the digits. All that follows has the
@@ -19,6 +21,12 @@
 
 #include <raygrid/raygrid.h>
 #include <stdbool.h>
+
+#ifdef REFERENCE_QUAD
+__extension__ typedef __float128 reference_real;
+#else
+typedef long double reference_real;
+#endif
 
 typedef struct reference_scene reference_scene;
 
@@ -45,6 +53,12 @@ void reference_move(reference_scene *scene, rg_object object, const rg_pose *pos
 void reference_set_mask(reference_scene *scene, rg_object object, uint32_t mask);
 void reference_remove(reference_scene *scene, rg_object object);
 
+/** Inserts an object of another scene, as it is there, at the cost of copying it. Its shape stays that scene's. */
+void reference_share(reference_scene *scene, const reference_scene *from, rg_object object);
+
+/** Removes all objects. Shapes stay. */
+void reference_clear(reference_scene *scene);
+
 bool reference_has(const reference_scene *scene, rg_object object);
 size_t reference_count(const reference_scene *scene);
 
@@ -58,12 +72,12 @@ void reference_bounds(const reference_scene *scene, rg_object object, double lo[
 
 /** A hit. For a miss: object RG_NO_OBJECT, t +infinity, primitive RG_NO_PRIMITIVE. */
 typedef struct reference_hit {
-    long double t; /* in units of the direction's length */
+    reference_real t; /* in units of the direction's length */
     rg_object object;
     uint32_t primitive;
-    long double normal[3]; /* world, outward, length 1 */
-    long double cosine;    /* of the angle between direction and normal: negative on fronts */
-    long double u, v;
+    reference_real normal[3]; /* world, outward, length 1 */
+    reference_real cosine;    /* of the angle between direction and normal: negative on fronts */
+    reference_real u, v;
 } reference_hit;
 
 /** Whether the ray is one at all, by the rules of raygrid/trace.h. */
@@ -79,6 +93,18 @@ int32_t reference_intersect(const reference_shape *shape, const rg_local_ray *ra
 
 /* ----------------------------------------------------------------------------------------------- verdicts */
 
+/**
+ * How far off an answer may be: the surface of an object by `radius` of its world radius (times the condition of its
+ * linear part), `way` of its distance, and `length`; t by `t` of the distance more. trace.h promises 2^-40, 2^-100, 0
+ * and 2^-50: of D > 2^60 R it says nothing. A scene judges by that, unless it is told otherwise before objects are
+ * inserted.
+ */
+typedef struct reference_bound {
+    double radius, way, length, t;
+} reference_bound;
+
+void reference_set_bound(reference_scene *scene, const reference_bound *bound);
+
 typedef enum reference_verdict {
     REFERENCE_EQUAL,
     /**
@@ -92,16 +118,20 @@ typedef enum reference_verdict {
 
 /** How far off a hit was. Zero for misses. */
 typedef struct reference_error {
-    long double t;       /* |t - exact t| in world length */
-    long double t_bound; /* what trace.h allows it to be */
-    long double normal;  /* length of the difference to the exact normal */
-    const char *what;    /* for REFERENCE_WRONG: which rule was broken; otherwise "" */
+    reference_real t;       /* |t - exact t| in world length */
+    reference_real t_bound; /* what trace.h allows it to be */
+    reference_real normal;  /* length of the difference to the exact normal */
+    const char *what;       /* for REFERENCE_WRONG: which rule was broken; otherwise "" */
 } reference_error;
 
 /** Judges a hit of the library: object, primitive, t, normal, u, v, position and the marks of misses and invalid
  *  rays. `error` may be NULL. */
 reference_verdict reference_compare(const reference_scene *scene, const rg_ray *ray, rg_cull cull, const rg_hit *got,
                                     reference_error *error);
+
+/** The same for who tells no more than which object is hit at which t: of `got` nothing else is judged. */
+reference_verdict reference_compare_place(const reference_scene *scene, const rg_ray *ray, const rg_hit *got,
+                                          reference_error *error);
 
 /** Judges the answer to an occluded query. */
 reference_verdict reference_compare_occluded(const reference_scene *scene, const rg_ray *ray, rg_cull cull, bool got);

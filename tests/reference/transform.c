@@ -11,7 +11,7 @@ static void two_sum(real a, real b, real *sum, real *lost) {
 
 /* Cuts the mantissa in two halves whose products are exact (Dekker, Veltkamp). */
 static void split(real a, real *high, real *low) {
-    const real factor = (real)(((uint64_t)1 << ((LDBL_MANT_DIG + 1) / 2)) + 1);
+    const real factor = (real)(((uint64_t)1 << ((REAL_DIGITS + 1) / 2)) + 1);
     real c = factor * a;
     *high = c - (c - a);
     *low = a - *high;
@@ -25,53 +25,31 @@ static void two_product(real a, real b, real *product, real *lost) {
     *lost = ((ah * bh - *product) + ah * bl + al * bh) + al * bl;
 }
 
-/*
- * A sum of many terms without error: parts of falling size of which none reaches into the digits of the next
- * (Shewchuk's expansion, 1997).
- */
-enum { MOST_PARTS = 24 };
+/* A number of twice the digits: the rounded value, and what is missing. */
+typedef struct pair {
+    real value, rest;
+} pair;
 
-typedef struct exact_sum {
-    real part[MOST_PARTS];
-    int count;
-} exact_sum;
-
-static void add(exact_sum *sum, real term) {
-    int kept = 0;
-    for (int i = 0; i < sum->count; i++) {
-        real lost;
-        two_sum(sum->part[i], term, &term, &lost);
-        if (lost != 0) sum->part[kept++] = lost;
-    }
-    if (term != 0 && kept < MOST_PARTS) sum->part[kept++] = term;
-    sum->count = kept;
-}
-
-static void add_product(exact_sum *sum, real a, real b) {
-    real product, lost;
-    two_product(a, b, &product, &lost);
-    add(sum, lost);
-    add(sum, product);
-}
-
-static real rounded(const exact_sum *sum) {
-    real value = 0;
-    for (int i = 0; i < sum->count; i++) value += sum->part[i];
-    return value;
+/* a + b * c, with an error of the square of a rounding, of the largest of them. */
+static pair add_product(pair a, real b, real c) {
+    real product, lost_product, sum, lost_sum;
+    two_product(b, c, &product, &lost_product);
+    two_sum(a.value, product, &sum, &lost_sum);
+    two_sum(sum, a.rest + (lost_product + lost_sum), &a.value, &a.rest);
+    return a;
 }
 
 /*
  * Finds the point of the ray that is nearest to the object's middle and writes it relative to the object's position;
- * returns its t. Each step along the ray is a product without error, so what is left after it has lost nothing; if
- * that is still far off, for t itself was rounded, another step follows.
+ * returns its t. A step along the ray is reckoned with twice the digits, so what is left after it has lost nothing;
+ * if that is still far off, for t itself was rounded, another step follows.
  */
 static real step_near(const object *o, const rg_ray *ray, const real d[3], real base[3]) {
-    exact_sum point[3] = {{{0}, 0}, {{0}, 0}, {{0}, 0}};
+    pair point[3];
     real t = 0, dd = dot(d, d);
     for (int i = 0; i < 3; i++) {
-        add(&point[i], ray->origin[i]);
-        add(&point[i], -(real)o->pose.position[i]);
-        base[i] = rounded(&point[i]);
+        two_sum(ray->origin[i], -(real)o->pose.position[i], &point[i].value, &point[i].rest);
+        base[i] = point[i].value;
     }
     /* An infinite box has no middle; its walls are met from where the ray begins. */
     if (!isfinite(o->radius)) return 0;
@@ -82,8 +60,8 @@ static real step_near(const object *o, const rg_ray *ray, const real d[3], real 
         if (step > 1 && fabsl(by) * sqrtl(dd) <= fmaxl(0x1p-30L * o->radius, 0x1p-60L * length(base))) break;
         t += by;
         for (int i = 0; i < 3; i++) {
-            add_product(&point[i], by, d[i]);
-            base[i] = rounded(&point[i]);
+            point[i] = add_product(point[i], by, d[i]);
+            base[i] = point[i].value;
         }
     }
     return t;
