@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "exact.h"
 
+#include "brute.h"
+
 #include <math.h>
 #include <reference.h>
 #include <stdlib.h>
@@ -29,28 +31,13 @@ struct exact_sample {
 
 enum { NOBODY = -1, LEAST_SAMPLES = 64, MOST_SAMPLES = 2000 };
 
-static const reference_shape *create_shape(reference_scene *reference, const struct bench_shape *shape) {
-    const double *s = shape->size;
-    const double lo[3] = {-s[0], -s[1], -s[2]}, a[3] = {-s[0], 0, 0}, b[3] = {s[0], 0, 0};
-    if (shape->kind == RG_SHAPE_SPHERE) return reference_sphere(reference, s[0]);
-    if (shape->kind == RG_SHAPE_BOX) return reference_box(reference, lo, s);
-    if (shape->kind == RG_SHAPE_CAPSULE) return reference_capsule(reference, a, b, s[1]);
-    const struct bench_mesh *mesh = shape->mesh;
-    double *vertices = bench_allocate(3 * (size_t)mesh->vertex_count, sizeof *vertices);
-    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++) vertices[i] = (double)mesh->vertices[i];
-    const reference_shape *result =
-        reference_mesh(reference, vertices, mesh->vertex_count, mesh->corners, mesh->triangle_count);
-    free(vertices);
-    return result;
-}
-
 struct exact *exact_create(const struct bench_scene *bodies, double (*positions)[3]) {
     struct exact *exact = bench_allocate(1, sizeof *exact);
     exact->bodies = bodies;
     exact->positions = positions ? positions : bodies->positions;
     exact->reference = reference_create();
     for (int s = 0; s < bodies->shape_count; s++) {
-        exact->shapes[s] = create_shape(exact->reference, &bodies->shapes[s]);
+        exact->shapes[s] = brute_shape(exact->reference, &bodies->shapes[s]);
     }
     exact->near = bench_allocate(bodies->count, sizeof *exact->near);
     return exact;

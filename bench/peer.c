@@ -86,6 +86,11 @@ static inline void store_hits(const struct packet *packet, const struct bench_an
         answers->t[from + i] = packet->row[ROW_T_FAR * n + i].f;
         answers->id[from + i] = (uint64_t)geometry << 32 | primitive;
     }
+    for (uint32_t k = 0; answers->normal[0] && k < 3; k++) {
+        for (uint32_t i = 0; i < used; i++) {
+            answers->normal[k][from + i] = packet->row[(ROW_NORMAL + k) * n + i].f;
+        }
+    }
 }
 
 /* `width` is a number in each of its calls, so that the compiler unrolls the loops over n. */

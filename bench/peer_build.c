@@ -200,7 +200,7 @@ static void make_capsules(struct peer *peer, struct peer_part *part) {
 }
 
 /* The scene of a mesh stands still: it is built as well as the peer can. */
-static void make_mesh(struct peer *peer, int shape) {
+static void make_mesh(struct peer *peer, int shape, bool robust) {
     const struct embree_api *api = peer->api;
     const struct bench_mesh *mesh = peer->bodies->shapes[shape].mesh;
     RTCGeometry geometry = api->rtcNewGeometry(peer->api->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -211,6 +211,7 @@ static void make_mesh(struct peer *peer, int shape) {
     api->rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
     api->rtcCommitGeometry(geometry);
     peer->meshes[shape] = api->rtcNewScene(peer->api->device);
+    api->rtcSetSceneFlags(peer->meshes[shape], robust ? RTC_SCENE_FLAG_ROBUST : 0);
     api->rtcSetSceneBuildQuality(peer->meshes[shape], RTC_BUILD_QUALITY_HIGH);
     api->rtcAttachGeometry(peer->meshes[shape], geometry);
     api->rtcReleaseGeometry(geometry);
@@ -289,7 +290,7 @@ struct peer *peer_create(const struct peer_choice *choice, const struct bench_sc
     if (peer->parts[PEER_CAPSULES].count) make_capsules(peer, &peer->parts[PEER_CAPSULES]);
     if (peer->parts[PEER_INSTANCES].count) {
         for (int s = 0; s < bodies->shape_count; s++) {
-            if (bodies->shapes[s].kind == RG_SHAPE_MESH) make_mesh(peer, s);
+            if (bodies->shapes[s].kind == RG_SHAPE_MESH) make_mesh(peer, s, choice->robust);
         }
         (in_array(peer) ? make_instance_array : make_instances)(peer, &peer->parts[PEER_INSTANCES]);
     }

@@ -12,7 +12,7 @@ static const float BEFORE_SURFACE = 1e-6f;
 
 enum { TILE = 8 };
 
-static struct bench_rays *create(const char *name, uint32_t count, bool any, bool coherent) {
+struct bench_rays *bench_rays_create(const char *name, uint32_t count, bool any, bool coherent) {
     struct bench_rays *rays = bench_allocate(1, sizeof *rays);
     rays->name = name;
     rays->count = count;
@@ -41,7 +41,8 @@ static int even_bits(int number) {
 }
 
 struct bench_rays *bench_primary_rays(const struct bench_scene *scene, int side, bool aimed) {
-    struct bench_rays *rays = create(aimed ? "aimed primary" : "primary", (uint32_t)(side * side), false, true);
+    struct bench_rays *rays =
+        bench_rays_create(aimed ? "aimed primary" : "primary", (uint32_t)(side * side), false, true);
     double lo[3] = {0, 0, 0}, hi[3] = {1, 1, 0};
     for (int k = 0; aimed && k < 3; k++) {
         lo[k] = scene->aim_lo[k];
@@ -76,7 +77,7 @@ void bench_refill_shadow_rays(struct bench_rays *shadows, const struct bench_ray
 }
 
 struct bench_rays *bench_shadow_rays(const struct bench_rays *rays, const float *t) {
-    struct bench_rays *shadows = create("shadow", rays->count, true, true);
+    struct bench_rays *shadows = bench_rays_create("shadow", rays->count, true, true);
     shadows->t_max = 1;
     bench_refill_shadow_rays(shadows, rays, t);
     return shadows;
@@ -88,7 +89,7 @@ static const char *name_of_random(bool aimed, bool any) {
 }
 
 struct bench_rays *bench_random_rays(const struct bench_scene *scene, uint32_t count, bool aimed, bool any) {
-    struct bench_rays *rays = create(name_of_random(aimed, any), count, any, false);
+    struct bench_rays *rays = bench_rays_create(name_of_random(aimed, any), count, any, false);
     uint64_t random = 2;
     for (uint32_t i = 0; i < count; i++) {
         double origin[3], direction[3];
@@ -120,12 +121,15 @@ rg_ray bench_ray(const struct bench_rays *rays, uint32_t which) {
 }
 
 struct bench_answers bench_answers_create(uint32_t count) {
-    return (struct bench_answers){bench_allocate(count, sizeof(float)), bench_allocate(count, sizeof(uint64_t)),
-                                  bench_allocate(count, 1)};
+    return (struct bench_answers){bench_allocate(count, sizeof(float)),
+                                  bench_allocate(count, sizeof(uint64_t)),
+                                  bench_allocate(count, 1),
+                                  {NULL, NULL, NULL}};
 }
 
 void bench_answers_destroy(struct bench_answers *answers) {
     free(answers->t);
     free(answers->id);
     free(answers->occluded);
+    for (int k = 0; k < 3; k++) free(answers->normal[k]);
 }

@@ -20,7 +20,11 @@ struct bench_answers {
     float *t;          /* of closest hits; +inf for a miss */
     uint64_t *id;      /* of closest hits, as the side names objects */
     uint8_t *occluded; /* of any-hit sets */
+    float *normal[3];  /* of closest hits, of any length, if not NULL; only the peer writes it */
 };
+
+/** Room for as many rays. */
+struct bench_rays *bench_rays_create(const char *name, uint32_t count, bool any, bool coherent);
 
 /**
  * side * side rays from a camera before the middle of the cube's face z = 0, aimed at the cube, or with `aimed` at
