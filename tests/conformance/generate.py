@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """
-Makes cases/*.json and their list, or with --check makes them again and fails where the committed files differ. Needs
-python3-jsonschema; see README.md.
+Makes cases/*.json, their list and a table of what they cover, or with --check makes them again and fails where the
+committed files differ. Needs python3-jsonschema; see README.md.
 """
 
 import json
@@ -21,6 +21,7 @@ import cases_pose
 import cases_query
 import cases_random
 import cases_scene
+import cases_shapes
 import cases_sphere
 import cases_triangle
 import emit
@@ -28,7 +29,7 @@ import emit
 HERE = Path(__file__).resolve().parent
 TOPICS = {
     "sphere": cases_sphere, "box": cases_box, "capsule": cases_capsule, "triangle": cases_triangle,
-    "pose": cases_pose,
+    "shapes": cases_shapes, "pose": cases_pose,
     "query": cases_query, "scene": cases_scene, "grid": cases_grid, "grids": cases_grids, "loose": cases_loose,
     "paper": cases_paper,
     "random": cases_random,
@@ -37,11 +38,37 @@ LEAST = 120  # cases
 EVERY_NUMBER = set(range(1, 41))  # of the list of stiff and extreme cases
 
 
+KINDS = ["sphere", "box", "capsule", "mesh"]
+
+
+def cell(names):
+    """The first few of them."""
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def coverage(cases):
+    """The list of stiff and extreme cases: what plays a part in each, by the shapes in it."""
+    lines = ["<!-- SPDX-License-Identifier: MIT -->", "<!-- Made by generate.py. -->", "# Which case covers what", "",
+             "Numbers are those of the list in [README.md](../README.md). A case that has several shapes is in",
+             "several columns. Set-ups: those that the cases of a line are played on, at most; each in every way to",
+             "trace.", "",
+             "| | " + " | ".join(KINDS) + " | no shape | set-ups |", "|---" * (len(KINDS) + 3) + "|"]
+    for number in sorted(EVERY_NUMBER):
+        of_number = [case for case in cases if number in case["numerics"]]
+        by_kind = {kind: [case["name"] for case in of_number if any(step["do"] == kind for step in case["steps"])]
+                   for kind in KINDS}
+        without = [case["name"] for case in of_number if not any(case["name"] in names for names in by_kind.values())]
+        setups = max(len(case["grids"]) for case in of_number)
+        cells = [cell(by_kind[kind]) for kind in KINDS] + [cell(without), str(setups)]
+        lines.append(f"| {number} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
 def texts():
     """The text of each file, checked against the schema."""
     validator = jsonschema.Draft202012Validator(json.loads((HERE / "schema.json").read_text()))
     validator.check_schema(validator.schema)
-    names, covered, made, index = set(), set(), {}, ""
+    names, covered, made, index, every = set(), set(), {}, "", []
     for topic, module in TOPICS.items():
         cases = [case.json() for case in module.all_cases()]
         text = "[\n" + ",\n".join(map(emit.dumps, cases)) + "\n]\n"
@@ -53,6 +80,7 @@ def texts():
             names.add(case["name"])
             covered.update(case["numerics"])
         made[topic + ".json"] = text
+        every += cases
         index += f"{topic}.json {len(cases)}\n"
     if len(names) < LEAST:
         raise SystemExit(f"only {len(names)} cases, expected at least {LEAST}")
@@ -60,6 +88,7 @@ def texts():
         raise SystemExit(f"numerics without a case: {sorted(EVERY_NUMBER - covered)}")
     print(f"{len(names)} cases in {len(made)} files")
     made["index.txt"] = index
+    made["coverage.md"] = coverage(every)
     return made
 
 
