@@ -4,6 +4,7 @@
 
 void rgi_capsule_init(rgi_capsule *capsule, const double a[3], const double b[3], double radius) {
     rgi_copy(a, capsule->a);
+    rgi_copy(b, capsule->b);
     capsule->radius = radius;
     double d[3];
     rgi_sub(b, a, d);

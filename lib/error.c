@@ -60,6 +60,8 @@ const char *rg_result_name(rg_result result) {
         return "RG_BUSY";
     case RG_CALLBACK_FAILED:
         return "RG_CALLBACK_FAILED";
+    case RG_INVALID_DATA:
+        return "RG_INVALID_DATA";
     default:
         return "unknown";
     }

@@ -65,6 +65,7 @@ bool rgi_sphere_roots(double radius, const double origin[3], const double direct
 typedef struct rgi_capsule {
     double a[3], axis[3]; /* one end; unit vector to the other */
     double length, radius;
+    double b[3]; /* the other end as it was given, for snapshots */
 } rgi_capsule;
 
 void rgi_capsule_init(rgi_capsule *capsule, const double a[3], const double b[3], double radius);

@@ -223,3 +223,9 @@ void rgi_mesh_destroy(rgi_mesh *mesh) {
     rgi_release(memory, mesh->vertices, mesh->vertex_count, sizeof *mesh->vertices);
     rgi_release(memory, mesh, 1, sizeof *mesh);
 }
+
+void rgi_mesh_read(const rgi_mesh *mesh, double (*vertices)[3], uint32_t (*triangles)[3]) {
+    memcpy(vertices, mesh->vertices, mesh->vertex_count * sizeof *vertices);
+    for (uint32_t i = 0; i < mesh->triangle_count; i++)
+        memcpy(triangles[mesh->primitives[i]], mesh->triangles[i], sizeof *triangles);
+}

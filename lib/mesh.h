@@ -36,6 +36,9 @@ void rgi_mesh_destroy(rgi_mesh *mesh);
 /** Makes nodes, triangles and primitives for the vertices and triangles given in the caller's order. */
 rg_result rgi_mesh_build(rgi_mesh *mesh);
 
+/** Copies the mesh as it was given: all vertices, and the vertices of all triangles, in the caller's order. */
+void rgi_mesh_read(const rgi_mesh *mesh, double (*vertices)[3], uint32_t (*triangles)[3]);
+
 bool rgi_mesh_intersect(const rgi_mesh *mesh, const rgi_local_ray *ray, rgi_candidate *candidate);
 
 #endif

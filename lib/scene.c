@@ -80,6 +80,10 @@ rg_result rg_scene_config_default(rg_scene_config *config, size_t size) {
     return rgi_struct_default(&default_config, sizeof default_config, CONFIG_LEAST, config, size, "rg_scene_config");
 }
 
+rg_result rgi_scene_config_read(rg_scene_config *config, const rg_scene_config *given) {
+    return rgi_struct_read(config, sizeof *config, CONFIG_LEAST, given, "rg_scene_config");
+}
+
 static uint32_t processors(void) {
     long n = sysconf(_SC_NPROCESSORS_ONLN);
     return n < 1 ? 1 : n > MAX_WORKERS ? MAX_WORKERS : (uint32_t)n;
@@ -112,7 +116,7 @@ rg_result rg_scene_create(const rg_scene_config *given, rg_scene **out) {
     rg_scene *scene;
     uint32_t index;
     if (!out) return rgi_fail(RG_INVALID_ARGUMENT, "scene is NULL: nowhere to return it");
-    rg_result result = rgi_struct_read(&config, sizeof config, CONFIG_LEAST, given, "rg_scene_config");
+    rg_result result = rgi_scene_config_read(&config, given);
     if (!result) result = check_config(&config, &grid);
     if (!result) result = rgi_memory_init(&memory, &config.allocator);
     if (!result && config.memory_limit) memory.limit = config.memory_limit;

@@ -17,6 +17,9 @@
 
 enum { RGI_GRIDS = 256 };
 
+/** A place whose generations are used up is never used again. */
+enum { RGI_GENERATIONS = 1 << 24 };
+
 /** A place for a grid. Ids are generation * 256 + index; the scene's own grid is 0 of generation 0. */
 typedef struct rgi_grid_place {
     struct rgi_any_grid *grid; /* NULL: free */
@@ -41,7 +44,11 @@ struct rg_scene {
     uint32_t running;               /* atomic: traces under way that let changes in between their rays */
     struct rgi_follower *followers; /* frames of this scene */
     struct rgi_follower *follows;   /* this scene is a frame; or NULL */
+    struct rgi_recorder *recorder;  /* NULL: nobody records */
 };
+
+/** Reads a configuration: NULL gives the defaults. RG_INVALID_ARGUMENT. */
+rg_result rgi_scene_config_read(rg_scene_config *config, const rg_scene_config *given);
 
 /* ------------------------------------------------------------------------------------------------ the lock */
 

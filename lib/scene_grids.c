@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-enum { REPORT_LEAST = offsetof(rg_grid_report, rebuilding), GENERATIONS = 1 << 24 };
+enum { REPORT_LEAST = offsetof(rg_grid_report, rebuilding) };
 
 rg_grid rgi_scene_grid_id(const rg_scene *scene, uint32_t index) {
     return scene->grids[index].generation << 8 | index;
@@ -22,7 +22,7 @@ rg_result rgi_scene_find_grid(const rg_scene *scene, rg_grid id, uint32_t *index
 /* The first place that is free and whose generations are not used up, or RGI_GRIDS. */
 static uint32_t free_place(const rg_scene *scene) {
     uint32_t i = 0;
-    while (i < scene->grid_places && (scene->grids[i].grid || scene->grids[i].generation == GENERATIONS)) i++;
+    while (i < scene->grid_places && (scene->grids[i].grid || scene->grids[i].generation == RGI_GENERATIONS)) i++;
     return i;
 }
 

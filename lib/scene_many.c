@@ -23,7 +23,7 @@ enum {
 /* The i-th of views of poses. What is not given: as `object` has it, or as rg_pose_at if there is no object. */
 static rg_result place_view(const rg_scene *scene, const rg_pose_views *views, uint64_t i, const rg_shape *shape,
                             const rgi_object *object, rgi_placing *p) {
-    double position[3], column[3], scale = 1;
+    double position[3], scale = 1;
     float given[9];
     const float *matrix = rgi_identity;
     rgi_load3(&views->position, i, position);
@@ -34,10 +34,7 @@ static rg_result place_view(const rg_scene *scene, const rg_pose_views *views, u
         if (linear) matrix = linear->matrix;
     }
     if (views->column[0].x) {
-        for (int j = 0; j < 3; j++) {
-            rgi_load3(&views->column[j], i, column);
-            for (int r = 0; r < 3; r++) given[3 * r + j] = (float)column[r];
-        }
+        rgi_load_columns(views->column, i, given);
         matrix = given;
     }
     return rgi_place(shape, position, matrix, rgi_load(&views->scale, i, scale), p);

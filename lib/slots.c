@@ -42,7 +42,7 @@ rg_result rgi_slots_cover(rgi_slots *slots, uint32_t index) {
 uint32_t rgi_slots_take(rgi_slots *slots) {
     if (slots->free_count) {
         uint32_t index = slots->free_first;
-        memcpy(&slots->free_first, rgi_slots_at(slots, index), sizeof slots->free_first);
+        slots->free_first = rgi_slots_after(slots, index);
         slots->free_count--;
         return index;
     }
@@ -59,7 +59,7 @@ void rgi_slots_give(rgi_slots *slots, uint32_t index) {
 
 void rgi_slots_trim(rgi_slots *slots) {
     if (slots->free_count == 0 || slots->free_first != slots->used - 1) return;
-    memcpy(&slots->free_first, rgi_slots_at(slots, slots->free_first), sizeof slots->free_first);
+    slots->free_first = rgi_slots_after(slots, slots->free_first);
     slots->free_count--;
     slots->used--;
 }

@@ -9,6 +9,7 @@
 #include "chunks.h"
 
 #include <stdint.h>
+#include <string.h>
 
 enum { RGI_CHUNK_BITS = 10, RGI_CHUNK = 1 << RGI_CHUNK_BITS };
 
@@ -45,6 +46,13 @@ static inline uint32_t rgi_slots_next(const rgi_slots *slots) {
 
 /** For records that are addressed, not taken: makes sure that there is one of this index. RG_OUT_OF_MEMORY. */
 rg_result rgi_slots_cover(rgi_slots *slots, uint32_t index);
+
+/** The record behind one of the free in the order in which they will be taken. */
+static inline uint32_t rgi_slots_after(const rgi_slots *slots, uint32_t index) {
+    uint32_t next;
+    memcpy(&next, rgi_slots_at(slots, index), sizeof next);
+    return next;
+}
 
 /** Takes a record: the one freed last, else a new one, which is all zeros. Must have been reserved. */
 uint32_t rgi_slots_take(rgi_slots *slots);

@@ -93,6 +93,15 @@ static inline void rgi_load3(const rg_input3 *view, uint64_t i, double out[3]) {
     out[2] = rgi_read_float(rgi_record(view->z, view->stride, i), view->type);
 }
 
+/** Three columns, rounded to float, as a matrix by rows. */
+static inline void rgi_load_columns(const rg_input3 columns[3], uint64_t i, float matrix[9]) {
+    double column[3];
+    for (int j = 0; j < 3; j++) {
+        rgi_load3(&columns[j], i, column);
+        for (int r = 0; r < 3; r++) matrix[3 * r + j] = (float)column[r];
+    }
+}
+
 static inline void rgi_load3_integer(const rg_input3 *view, uint64_t i, uint64_t out[3]) {
     out[0] = rgi_read_integer(rgi_record(view->x, view->stride, i), view->type);
     out[1] = rgi_read_integer(rgi_record(view->y, view->stride, i), view->type);

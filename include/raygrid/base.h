@@ -62,7 +62,9 @@ enum {
     /** The call would change a scene from inside a callback of that scene, or remove what is still in use. */
     RG_BUSY = 7,
     /** A callback of the host reported failure or returned NaN. */
-    RG_CALLBACK_FAILED = 8
+    RG_CALLBACK_FAILED = 8,
+    /** A snapshot or recording is damaged, of another version, or not what the call takes. */
+    RG_INVALID_DATA = 9
 };
 
 /** The name of a result code, such as "RG_INVALID_VALUE"; "unknown" for a number that is none. Any thread. */

@@ -217,6 +217,31 @@ FIELD(rg_trace_config, filter, 16);
 FIELD(rg_trace_config, filter_user, 24);
 FIELD(rg_trace_config, invalid, 32);
 
+/* record.h */
+
+SIZE(rg_sink, 32);
+FIELD(rg_sink, size, 0);
+FIELD(rg_sink, user, 8);
+FIELD(rg_sink, write, 16);
+FIELD(rg_sink, number_shape, 24);
+
+SIZE(rg_source, 48);
+FIELD(rg_source, size, 0);
+FIELD(rg_source, bytes, 8);
+FIELD(rg_source, byte_count, 16);
+FIELD(rg_source, user, 24);
+FIELD(rg_source, find_shape, 32);
+FIELD(rg_source, shapes, 40);
+
+SIZE(rg_replay_report, 48);
+FIELD(rg_replay_report, size, 0);
+FIELD(rg_replay_report, calls, 8);
+FIELD(rg_replay_report, offset, 16);
+FIELD(rg_replay_report, objects, 24);
+FIELD(rg_replay_report, object, 32);
+FIELD(rg_replay_report, call, 40);
+FIELD(rg_replay_report, grid, 44);
+
 #endif
 
 int main(void) {

@@ -6,12 +6,12 @@
 #include <string.h>
 
 START_TEST(names) {
-    for (rg_result r = RG_OK; r <= RG_CALLBACK_FAILED; r++) {
+    for (rg_result r = RG_OK; r <= RG_INVALID_DATA; r++) {
         ck_assert(strncmp(rg_result_name(r), "RG_", 3) == 0);
         for (rg_result s = RG_OK; s < r; s++) ck_assert_str_ne(rg_result_name(r), rg_result_name(s));
     }
     ck_assert_str_eq(rg_result_name(-1), "unknown");
-    ck_assert_str_eq(rg_result_name(RG_CALLBACK_FAILED + 1), "unknown");
+    ck_assert_str_eq(rg_result_name(RG_INVALID_DATA + 1), "unknown");
     ck_assert_uint_eq(rg_version(), 1000 * RG_VERSION_MINOR + RG_VERSION_PATCH + 1000000 * RG_VERSION_MAJOR);
 }
 END_TEST
