@@ -4,6 +4,7 @@
 #include "error.h"
 #include "frame.h"
 #include "rebuild.h"
+#include "record.h"
 #include "struct_size.h"
 
 #include <stddef.h>
@@ -165,6 +166,9 @@ rg_result rg_scene_destroy(rg_scene **pointer) {
     rg_scene *scene = *pointer;
     if (!wait_for_calls(scene)) return rgi_fail(RG_BUSY, "a scene can't be destroyed before its frames");
     *pointer = NULL;
+    rgi_fail_quietly(true);
+    (void)rg_scene_record(scene, NULL);
+    rgi_fail_quietly(false);
     scene_free(scene);
     return RG_OK;
 }

@@ -2,6 +2,7 @@
 #include "any_grid.h"
 #include "error.h"
 #include "frame.h"
+#include "record.h"
 #include "struct_size.h"
 
 #include <stddef.h>
@@ -69,6 +70,7 @@ rg_result rg_grid_create(rg_scene *scene, const rg_grid_config *given, rg_grid *
     if (!result) {
         *out = rgi_scene_grid_id(scene, index);
         rgi_followers_note_grids(scene);
+        RGI_RECORD(grid, scene, RG_CALL_GRID_CREATE, *out, &config);
     }
     return rgi_scene_end_change(scene, &frame, result);
 }
@@ -91,6 +93,7 @@ rg_result rg_grid_destroy(rg_scene *scene, rg_grid id) {
     if (result) return result;
     result = destroy(scene, id);
     if (!result) rgi_followers_note_grids(scene);
+    if (!result) RGI_RECORD(grid, scene, RG_CALL_GRID_DESTROY, id, NULL);
     return rgi_scene_end_change(scene, &frame, result);
 }
 
@@ -104,6 +107,7 @@ rg_result rg_grid_configure(rg_scene *scene, rg_grid id, const rg_grid_config *g
     result = rgi_scene_find_grid(scene, id, &index);
     if (!result) result = rgi_any_grid_configure(scene->grids[index].grid, scene, &config);
     if (!result) rgi_followers_note_grids(scene);
+    if (!result) RGI_RECORD(grid, scene, RG_CALL_GRID_CONFIGURE, id, &config);
     return rgi_scene_end_change(scene, &frame, result);
 }
 
@@ -114,6 +118,7 @@ rg_result rg_grid_rebuild(rg_scene *scene, rg_grid id) {
     if (result) return result;
     result = rgi_scene_find_grid(scene, id, &index);
     if (!result) result = rgi_any_grid_rebuild(scene->grids[index].grid, scene);
+    if (!result) RGI_RECORD(grid, scene, RG_CALL_GRID_REBUILD, id, NULL);
     return rgi_scene_end_change(scene, &frame, result);
 }
 

@@ -6,6 +6,7 @@
 #include "any_grid.h"
 #include "error.h"
 #include "frame.h"
+#include "record.h"
 #include "scene_objects.h"
 #include "struct_size.h"
 #include "vec.h"
@@ -161,6 +162,7 @@ static rg_result insert_all(rg_scene *scene, const rg_insert_views *views, uint6
     bool bulk = rgi_any_grid_is_loose(store) && store->count == 0 && count >= BULK;
     result = bulk ? insert_bulk(scene, views, count, grid, ids) : insert_each(scene, views, count, grid, ids);
     if (!result) {
+        RGI_RECORD(insert_many, scene, views, count, ids);
         for (uint64_t i = 0; i < count && objects; i++) rgi_store_integer(objects, i, ids[i]);
         rgi_any_grid_settle(scene->grids[grid].grid, scene, count);
     }
@@ -303,7 +305,9 @@ rg_result rg_scene_move_many(rg_scene *scene, const rg_input *objects, const rg_
     if (!result) result = rgi_check_view(objects->data, objects->type, RGI_U64, count > 0, "objects");
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
-    return rgi_scene_end_change(scene, &frame, move_all(scene, objects, &poses, count));
+    result = move_all(scene, objects, &poses, count);
+    if (!result) RGI_RECORD(move_many, scene, objects, &poses, count);
+    return rgi_scene_end_change(scene, &frame, result);
 }
 
 static rg_result mark_all(rg_scene *scene, const rg_input *objects, uint64_t count, uint64_t *marked) {
@@ -343,7 +347,9 @@ rg_result rg_scene_remove_many(rg_scene *scene, const rg_input *objects, uint64_
     if (!result) result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
     rg_shape *gone = NULL;
-    result = rgi_scene_end_change(scene, &frame, remove_all(scene, objects, count, &gone));
+    result = remove_all(scene, objects, count, &gone);
+    if (!result) RGI_RECORD(remove_many, scene, objects, count);
+    rgi_scene_end_change(scene, &frame, result);
     rgi_shapes_destroy(gone);
     return result;
 }

@@ -5,6 +5,7 @@
 #include "any_grid.h"
 #include "error.h"
 #include "frame.h"
+#include "record.h"
 #include "struct_size.h"
 #include "vec.h"
 
@@ -182,6 +183,7 @@ rg_result rg_scene_insert(rg_scene *scene, rg_shape *shape, const rg_pose *pose,
     if (result) return result;
     result = rgi_insert_one(scene, shape, &p, UINT32_MAX, 0, &id);
     if (!result) rgi_any_grid_settle(scene->grids[0].grid, scene, 1);
+    if (!result) RGI_RECORD(insert, scene, id, pose);
     if (!result && out) *out = id;
     return rgi_scene_end_change(scene, &frame, result);
 }
@@ -208,7 +210,9 @@ rg_result rg_scene_move(rg_scene *scene, rg_object id, const rg_pose *pose) {
     if (!pose) return rgi_fail(RG_INVALID_ARGUMENT, "pose is NULL");
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
-    return rgi_scene_end_change(scene, &frame, move_by_id(scene, id, pose->position, pose));
+    result = move_by_id(scene, id, pose->position, pose);
+    if (!result) RGI_RECORD(move, scene, id, pose);
+    return rgi_scene_end_change(scene, &frame, result);
 }
 
 bool rgi_is_quick(const rg_scene *scene, uint32_t slot, const double position[3]) {
@@ -237,7 +241,9 @@ rg_result rg_scene_move_to(rg_scene *scene, rg_object id, const double position[
     if (!position) return rgi_fail(RG_INVALID_ARGUMENT, "position is NULL");
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
-    return rgi_scene_end_change(scene, &frame, move_by_id(scene, id, position, NULL));
+    result = move_by_id(scene, id, position, NULL);
+    if (!result) RGI_RECORD(move_to, scene, id, position);
+    return rgi_scene_end_change(scene, &frame, result);
 }
 
 rg_result rg_scene_set_mask(rg_scene *scene, rg_object id, uint32_t mask) {
@@ -250,6 +256,7 @@ rg_result rg_scene_set_mask(rg_scene *scene, rg_object id, uint32_t mask) {
         rgi_scene_object(scene, slot)->mask = mask;
         rgi_scene_changed(scene, slot);
         scene->masked |= mask != UINT32_MAX;
+        RGI_RECORD(mask, scene, id, mask);
     }
     return rgi_scene_end_change(scene, &frame, result);
 }
@@ -265,6 +272,7 @@ rg_result rg_scene_remove(rg_scene *scene, rg_object id) {
         uint32_t grid = rgi_scene_object(scene, slot)->grid;
         rgi_shape_put_aside(rgi_remove_one(scene, slot), &gone);
         rgi_any_grid_settle(scene->grids[grid].grid, scene, 1);
+        RGI_RECORD(remove, scene, id);
     }
     rgi_scene_end_change(scene, &frame, result);
     rgi_shapes_destroy(gone);
