@@ -103,6 +103,10 @@ static void py_scene_end(rg_scene *scene) {
     rg_scene_destroy(&scene);
 }
 
+static void py_replay_end(rg_replay *replay) {
+    rg_replay_destroy(&replay);
+}
+
 static void py_shape_end(rg_shape *shape) {
     rg_shape_release(&shape);
 }

@@ -18,6 +18,7 @@ from ._errors import (
     CallbackFailed,
     Error,
     InvalidArgument,
+    InvalidData,
     InvalidId,
     InvalidValue,
     LimitExceeded,
@@ -27,6 +28,7 @@ from ._errors import (
 from ._grids import REBUILD_NEVER, Grid, GridConfig, GridKind, GridReport
 from ._hits import Hits
 from ._raygrid import lib as _lib
+from ._replay import Call, Replay, Step
 from ._scene import Candidate, Cull, Isa, ObjectReport, Scene, SceneReport, Without
 from ._shapes import Box, Capsule, Mesh, Shape, Sphere
 
@@ -41,6 +43,7 @@ __all__ = [
     "Box",
     "Busy",
     "COORDINATE_MAX",
+    "Call",
     "CallbackFailed",
     "Candidate",
     "Capsule",
@@ -52,6 +55,7 @@ __all__ = [
     "GridReport",
     "Hits",
     "InvalidArgument",
+    "InvalidData",
     "InvalidId",
     "InvalidValue",
     "Isa",
@@ -64,10 +68,12 @@ __all__ = [
     "OutOfThreads",
     "RADIUS_MIN",
     "REBUILD_NEVER",
+    "Replay",
     "Scene",
     "SceneReport",
     "Shape",
     "Sphere",
+    "Step",
     "Without",
 ]
 

@@ -42,6 +42,10 @@ class CallbackFailed(Error, RuntimeError):
     """RG_CALLBACK_FAILED: a callback raised; its exception is the cause of this one."""
 
 
+class InvalidData(Error, ValueError):
+    """RG_INVALID_DATA: a snapshot or recording is damaged, of another version, or not what the call takes."""
+
+
 ERRORS: dict[int, type[Error]] = {
     lib.RG_INVALID_ARGUMENT: InvalidArgument,
     lib.RG_INVALID_VALUE: InvalidValue,
@@ -51,6 +55,7 @@ ERRORS: dict[int, type[Error]] = {
     lib.RG_OUT_OF_THREADS: OutOfThreads,
     lib.RG_BUSY: Busy,
     lib.RG_CALLBACK_FAILED: CallbackFailed,
+    lib.RG_INVALID_DATA: InvalidData,
 }
 
 

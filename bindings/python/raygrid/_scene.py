@@ -3,18 +3,19 @@
 
 from __future__ import annotations
 
+import atexit
 import enum
 import os
 import weakref
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arrays, _hits, _shapes
+from . import _arrays, _bytes, _hits, _shapes
 from ._errors import check, error
 from ._grids import Grid, GridConfig
 from ._hits import Hits
@@ -140,7 +141,19 @@ def _leave_to_parent() -> None:
             scene._closed = "the scene belongs to the parent process: make one in this process"
 
 
+def _end_recordings() -> None:
+    """While what they are written with is still there."""
+    for scene in list(_alive):
+        if scene._handle is not None:
+            scene._end_recording(scene._handle)
+
+
+def _load(data: bytes, workers: int) -> Scene:
+    return Scene.load(data, workers=workers)
+
+
 os.register_at_fork(after_in_child=_leave_to_parent)
+atexit.register(_end_recordings)
 
 
 class Scene:
@@ -160,23 +173,39 @@ class Scene:
     array([4.])
     """
 
-    __slots__ = ("__weakref__", "_closed", "_handle", "_log")
+    __slots__ = ("__weakref__", "_closed", "_handle", "_log", "_recording", "_workers")
 
     def __init__(
         self, *, workers: int = 0, grid: GridConfig | None = None, log: Callable[[str], object] | None = None
     ) -> None:
         self._handle: Any = None
+        self._recording: Any = None
         self._closed = "the scene was not made"
-        config = ffi.new("rg_scene_config *", {"size": ffi.sizeof("rg_scene_config"), "workers": workers})
+        self._workers = workers
         own_grid = None if grid is None else grid._struct()
-        if own_grid is not None:
-            config.grid = own_grid
+        self._create(lib.rg_scene_create, ffi.new("rg_scene **"), own_grid, log)
+
+    @classmethod
+    def _make(
+        cls, create: Callable[..., int], made: Any, *, workers: int, log: Callable[[str], object] | None
+    ) -> Scene:
+        """A scene that another call of the library makes."""
+        scene = cls.__new__(cls)
+        scene._handle = scene._recording = None
+        scene._closed = "the scene was not made"
+        scene._workers = workers
+        scene._create(create, made, None, log)
+        return scene
+
+    def _create(self, create: Callable[..., int], made: Any, grid: Any, log: Callable[[str], object] | None) -> None:
+        config = ffi.new("rg_scene_config *", {"size": ffi.sizeof("rg_scene_config"), "workers": self._workers})
+        if grid is not None:
+            config.grid = grid
         self._log = None if log is None else (log, ffi.new_handle(log))
         if self._log is not None:
             config.log = lib.py_log
             config.log_user = self._log[1]
-        made = ffi.new("rg_scene **")
-        check(lib.rg_scene_create(config, made))
+        check(create(config, made))
         # The pointer ends the scene when it is dropped by the last call that uses it.
         self._handle = ffi.gc(made[0], lib.py_scene_end)
         self._closed = "the scene is closed"
@@ -190,7 +219,14 @@ class Scene:
 
     def close(self) -> None:
         """Ends the scene and all its objects. Does nothing the second time."""
-        self._handle = None
+        handle, self._handle = self._handle, None
+        if handle is not None:
+            self._end_recording(handle)
+
+    def __del__(self) -> None:
+        handle = getattr(self, "_handle", None)
+        if handle is not None and self._recording is not None:
+            self._end_recording(handle)
 
     def __enter__(self) -> Scene:
         self._open()
@@ -509,8 +545,64 @@ class Scene:
         counts = {name: getattr(report, name) for name in names}
         return SceneReport(**counts, isa=Isa(report.isa), left_out=Without(report.left_out))
 
-    def __reduce__(self) -> NoReturn:
-        raise TypeError("a raygrid.Scene can't be pickled or copied: insert its objects into a new one")
+    # ------------------------------------------------------------------------------------------- as bytes
+
+    def save(self) -> bytes:
+        """A snapshot of the scene as it is: what Scene.load makes it of again, here or elsewhere.
+
+        >>> from raygrid import Scene, Sphere
+        >>> with Scene() as scene:
+        ...     ball = scene.insert(Sphere(), (0, 0, 5))
+        ...     data = scene.save()
+        >>> with Scene.load(data) as scene:
+        ...     scene.trace((0, 0, 0), (0, 0, 1)).object == ball
+        array([ True])
+        """
+        parts: list[bytes] = []
+        writing = _bytes.Writing(parts.append)
+        user = ffi.new_handle(writing)
+        writing.check(lib.rg_scene_save(self._open(), _bytes.sink(user)))
+        return b"".join(parts)
+
+    @classmethod
+    def load(cls, data: _bytes.Bytes, *, workers: int = 0, log: Callable[[str], object] | None = None) -> Scene:
+        """A scene from a snapshot: the same ids, the same answers to the last bit. Its grids come with it."""
+        source, kept = _bytes.source(data)
+        return cls._make(
+            lambda config, made: lib.rg_scene_load(config, source, made),
+            ffi.new("rg_scene **"),
+            workers=workers,
+            log=log,
+        )
+
+    def record(self, write: Callable[[bytes], object] | None) -> None:
+        """Begins a recording: `write`, such as that of a binary file, gets a snapshot, then each change of the scene
+        before the call that makes it returns. None ends the recording, and so does the end of the scene.
+
+        If `write` raises, the recording ends, and not the call that was to be recorded: CallbackFailed, from what it
+        raised, comes when the recording is ended. It must not use the scene. Replay plays what was written.
+        """
+        handle = self._open()
+        if write is None:
+            recording = self._end_recording(handle)
+            if recording is not None:
+                recording[0].check(recording[2])
+            return
+        writing = _bytes.Writing(write)
+        user = ffi.new_handle(writing)
+        writing.check(lib.rg_scene_record(handle, _bytes.sink(user)))
+        self._recording = (writing, user)
+
+    def _end_recording(self, handle: Any) -> tuple[_bytes.Writing, Any, int] | None:
+        """What it was written with, and with what result it ended; None if there was none."""
+        recording, self._recording = self._recording, None
+        if recording is None:
+            return None
+        result = lib.rg_scene_record(handle, ffi.NULL)
+        return (*recording, result)
+
+    def __reduce__(self) -> tuple[Callable[..., Scene], tuple[bytes, int]]:
+        return _load, (self.save(), self._workers)
 
     def __repr__(self) -> str:
         if self._handle is None:

@@ -32,6 +32,7 @@ def test_kinds() -> None:
     grids = {name: value for name, value in constants("RG_GRID_").items() if name != "OF_SCENE"}
     assert {kind.name: kind.value for kind in raygrid.GridKind} == grids
     assert {cull.name: cull.value for cull in raygrid.Cull} == constants("RG_CULL_")
+    assert {call.name: call.value for call in raygrid.Call} == constants("RG_CALL_")
     assert {isa.name: isa.value for isa in raygrid.Isa} == constants("RG_ISA_")
     assert {bit.name: bit.value for bit in raygrid.Without} == constants("RG_WITHOUT_")
     assert set(_shapes.CLASSES) | {lib.RG_SHAPE_USER} == set(constants("RG_SHAPE_").values())
@@ -40,6 +41,7 @@ def test_kinds() -> None:
 def test_reports() -> None:
     assert names(raygrid.GridConfig) == fields("rg_grid_config")
     assert names(raygrid.GridReport) == fields("rg_grid_report")
+    assert names(raygrid.Step) == fields("rg_replay_report")
     assert names(raygrid.SceneReport) == fields("rg_scene_report")
     assert names(raygrid.ObjectReport) == fields("rg_object_report", "pose") | fields("rg_pose")
 
@@ -61,6 +63,9 @@ def test_arguments_of_calls() -> None:
     move = set(inspect.signature(raygrid.Scene.move).parameters)
     assert move - {"self", "objects"} == {"positions", "linear", "scale"}
     assert fields("rg_pose_views") == {"position", "column", "scale"}
+    # User-defined shapes are not to be had from Python, so nobody numbers them and nobody finds them.
+    assert fields("rg_sink") == {"user", "write", "number_shape"}
+    assert fields("rg_source") == {"bytes", "byte_count", "user", "find_shape", "shapes"}
     assert fields("rg_mesh_views", "vertex_count", "triangle_count") == set(
         inspect.signature(raygrid.Mesh).parameters
     )
