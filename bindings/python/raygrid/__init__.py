@@ -29,7 +29,7 @@ from ._grids import REBUILD_NEVER, Grid, GridConfig, GridKind, GridReport
 from ._hits import Hits
 from ._raygrid import lib as _lib
 from ._replay import Call, Replay, Step
-from ._scene import Candidate, Cull, Isa, ObjectReport, Scene, SceneReport, Without
+from ._scene import Candidate, Cull, Frame, Isa, ObjectReport, Scene, SceneReport, Without
 from ._shapes import Box, Capsule, Mesh, Shape, Sphere
 
 __version__ = "{}.{}.{}".format(*(_lib.rg_version() // 1000**place % 1000 for place in (2, 1, 0)))
@@ -49,6 +49,7 @@ __all__ = [
     "Capsule",
     "Cull",
     "Error",
+    "Frame",
     "Grid",
     "GridConfig",
     "GridKind",

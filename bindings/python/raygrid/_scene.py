@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import atexit
 import enum
+import functools
 import os
 import weakref
 from collections.abc import Callable, Iterable, Mapping
@@ -152,6 +153,10 @@ def _load(data: bytes, workers: int) -> Scene:
     return Scene.load(data, workers=workers)
 
 
+def _end_frame(leader: Any, pointer: Any) -> None:
+    lib.py_scene_end(pointer)
+
+
 os.register_at_fork(after_in_child=_leave_to_parent)
 atexit.register(_end_recordings)
 
@@ -162,6 +167,7 @@ class Scene:
     workers: threads that trace large calls together, the calling one among them; 0: one a processor.
     grid: how the scene's own grid is made.
     log: is called with a line of text when a grid is rebuilt; it must not use the scene.
+    memory_limit: bytes that the scene may hold (SceneReport.bytes); what needs more raises OutOfMemory. 0: no limit.
 
     Any number of threads may use a scene at once; traces run side by side and release the interpreter. close(), or
     the end of a `with`, ends it as soon as no other thread is inside a call; after it, every call raises ValueError.
@@ -176,14 +182,19 @@ class Scene:
     __slots__ = ("__weakref__", "_closed", "_handle", "_log", "_recording", "_workers")
 
     def __init__(
-        self, *, workers: int = 0, grid: GridConfig | None = None, log: Callable[[str], object] | None = None
+        self,
+        *,
+        workers: int = 0,
+        grid: GridConfig | None = None,
+        log: Callable[[str], object] | None = None,
+        memory_limit: int = 0,
     ) -> None:
         self._handle: Any = None
         self._recording: Any = None
         self._closed = "the scene was not made"
         self._workers = workers
         own_grid = None if grid is None else grid._struct()
-        self._create(lib.rg_scene_create, ffi.new("rg_scene **"), own_grid, log)
+        self._create(lib.rg_scene_create, ffi.new("rg_scene **"), own_grid, log, memory_limit)
 
     @classmethod
     def _make(
@@ -197,8 +208,17 @@ class Scene:
         scene._create(create, made, None, log)
         return scene
 
-    def _create(self, create: Callable[..., int], made: Any, grid: Any, log: Callable[[str], object] | None) -> None:
+    def _create(
+        self,
+        create: Callable[..., int],
+        made: Any,
+        grid: Any,
+        log: Callable[[str], object] | None,
+        memory_limit: int = 0,
+        leader: Any = None,
+    ) -> None:
         config = ffi.new("rg_scene_config *", {"size": ffi.sizeof("rg_scene_config"), "workers": self._workers})
+        config.memory_limit = memory_limit
         if grid is not None:
             config.grid = grid
         self._log = None if log is None else (log, ffi.new_handle(log))
@@ -206,8 +226,10 @@ class Scene:
             config.log = lib.py_log
             config.log_user = self._log[1]
         check(create(config, made))
-        # The pointer ends the scene when it is dropped by the last call that uses it.
-        self._handle = ffi.gc(made[0], lib.py_scene_end)
+        # The pointer ends the scene when it is dropped by the last call that uses it; that of a frame's leader, which
+        # it holds, afterwards.
+        end = lib.py_scene_end if leader is None else functools.partial(_end_frame, leader)
+        self._handle = ffi.gc(made[0], end)
         self._closed = "the scene is closed"
         _alive.add(self)
 
@@ -348,12 +370,14 @@ class Scene:
         (array([1., 2., 3.]), 4.0)
         """
         report = ffi.new("rg_object_report *", {"size": ffi.sizeof("rg_object_report")})
+        shape = ffi.new("rg_shape **")
         check(lib.rg_scene_lookup(self._open(), self._id(object), report))
+        check(lib.rg_scene_shape_of(self._open(), self._id(object), shape))
         return ObjectReport(
             position=np.array(list(report.pose.position)),
             linear=np.array(list(report.pose.linear), np.float32).reshape(3, 3),
             scale=report.pose.scale,
-            shape=_shapes.of_pointer(report.shape),
+            shape=_shapes.taking_over(shape[0]),
             mask=report.mask,
             grid=Grid(self, report.grid),
             lo=np.array(list(report.lo)),
@@ -545,6 +569,31 @@ class Scene:
         counts = {name: getattr(report, name) for name in names}
         return SceneReport(**counts, isa=Isa(report.isa), left_out=Without(report.left_out))
 
+    def frame(self, *, workers: int = 0) -> Frame:
+        """A frame of the scene: it shows what the scene holds now, under the same ids, until it is updated.
+
+        >>> from raygrid import Scene, Sphere
+        >>> with Scene() as scene, scene.frame() as frame:
+        ...     ball = scene.insert(Sphere(), (0, 0, 5))
+        ...     before = frame.trace((0, 0, 0), (0, 0, 1)).t
+        ...     frame.update()
+        ...     before, frame.trace((0, 0, 0), (0, 0, 1)).t
+        (array([inf]), array([4.]))
+        """
+        frame = Frame.__new__(Frame)
+        frame._handle = frame._recording = None
+        frame._closed = "the frame was not made"
+        frame._workers = workers
+        leader = self._open()
+        frame._create(
+            lambda config, made: lib.rg_scene_create_frame(leader, config, made),
+            ffi.new("rg_scene **"),
+            None,
+            None,
+            leader=leader,
+        )
+        return frame
+
     # ------------------------------------------------------------------------------------------- as bytes
 
     def save(self) -> bytes:
@@ -610,3 +659,18 @@ class Scene:
         report = self.stats()
         grids = f"{report.grids} grid" + "s" * (report.grids != 1)
         return f"<raygrid.Scene: {report.objects} objects in {grids}, {report.workers} workers, {report.bytes} bytes>"
+
+
+class Frame(Scene):
+    """A scene that shows another one as it was at its last update, all of one instant: for tracing while the other is
+    changed. Scene.frame makes it. It is traced and read like any scene; changes of it raise Busy.
+    """
+
+    __slots__ = ()
+
+    def __init__(self) -> None:
+        raise TypeError("a raygrid.Frame is made by Scene.frame")
+
+    def update(self) -> None:
+        """Takes over what has changed in the scene since the last update, each object once."""
+        check(lib.rg_scene_update_frame(self._open()))

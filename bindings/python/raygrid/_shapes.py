@@ -174,11 +174,10 @@ CLASSES: dict[int, type[Shape]] = {
 }
 
 
-def of_pointer(pointer: Any) -> Shape:
-    """The shape that an object of a scene has, with a reference of its own."""
+def taking_over(pointer: Any) -> Shape:
+    """The shape that a pointer is to, with the reference that it stands for."""
     report = ffi.new("rg_shape_report *", {"size": ffi.sizeof("rg_shape_report")})
     check(lib.rg_shape_stats(pointer, report))
-    lib.rg_shape_retain(pointer)
     kind = CLASSES.get(report.kind, Shape)
     shape = kind.__new__(kind)
     shape._own(pointer)

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_process import run
 
 import raygrid
 from raygrid import Box, Call, Capsule, GridConfig, GridKind, Mesh, Replay, Scene, Sphere
+from test_process import run
 
 SHAPES = [
     Sphere(0.5),

@@ -178,6 +178,38 @@ def test_scenes_that_are_refused(config: Any) -> None:
         Scene(**config)
 
 
+def test_frames() -> None:
+    with Scene(workers=1) as scene:
+        ball = scene.insert(Sphere(), (5, 0, 0))
+        frame = scene.frame(workers=1)
+        scene.move(ball, (9, 0, 0))
+        assert frame.trace((0, 0, 0), (1, 0, 0)).t == 4
+        assert scene.trace((0, 0, 0), (1, 0, 0)).t == 8
+        with pytest.raises(raygrid.Busy):
+            frame.move(ball, (1, 2, 3))
+        frame.update()
+        hits = frame.trace((0, 0, 0), (1, 0, 0))
+        assert hits.t == 8 and hits.object == ball
+        with pytest.raises(raygrid.InvalidArgument):
+            raygrid.Frame.update(scene)  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match="Scene.frame"):
+            raygrid.Frame()
+    # The scene was closed first: it goes when its frame does.
+    assert frame.trace((0, 0, 0), (1, 0, 0)).t == 8
+    frame.update()
+    frame.close()
+    with pytest.raises(ValueError, match="closed"):
+        frame.update()
+
+
+def test_memory_limit() -> None:
+    with Scene(workers=1, memory_limit=1 << 20) as scene:
+        scene.insert(Sphere(), np.zeros((100, 3)))
+        with pytest.raises(raygrid.OutOfMemory, match="limit of 1048576"):
+            scene.insert(Sphere(), np.zeros((100000, 3)))
+        assert scene.stats().objects == 100 and scene.stats().bytes <= 1 << 20
+
+
 def test_closed() -> None:
     scene = Scene()
     grid = scene.grid
