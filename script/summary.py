@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Adds up the tests of several builds: summary.py ROOT NAME..., for the builds ROOT/build-NAME.
 
-Reads the logs that `meson test` left there, or the tests.xml of pytest. A build without a log did not build or did not
+Reads the logs that `meson test` left there, the tests.xml of pytest, or the tests.log of cargo test. A build without a log did not build or did not
 run and counts as one failure.
 The last line is 'N passed, N failed'; the exit code is 1 if any test failed or none ran.
 """
@@ -34,9 +34,20 @@ def read_junit(path):
     return tests
 
 
+def read_cargo(path):
+    """The same of a tests.log: a line for each test, as cargo test prints them; it tells no times."""
+    results = {"ok": "OK", "ignored": "SKIP"}
+    tests = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        name, _, result = line.removeprefix("test ").rpartition(" ... ")
+        tests.append((name, results.get(result.split(",")[0], "FAIL"), 0.0))
+    return tests
+
+
 def read_build(build):
     """The tests of a build, by whichever log it has."""
-    for name, reader in (("meson-logs/testlog.json", read_log), ("tests.xml", read_junit)):
+    readers = {"meson-logs/testlog.json": read_log, "tests.xml": read_junit, "tests.log": read_cargo}
+    for name, reader in readers.items():
         if (build / name).exists():
             return reader(build / name)
     return []
