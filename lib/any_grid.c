@@ -345,7 +345,7 @@ static void settle_cells(rgi_any_grid *grid, rg_scene *scene, uint64_t changes) 
 /* What the changes themselves do of a rebuild, in inserts: a few, and for calls on many a small part of their cost.
  */
 static uint64_t share(uint64_t changes) {
-    return 8 + changes / 32;
+    return 4 + changes / 32;
 }
 
 void rgi_any_grid_settle(rgi_any_grid *grid, rg_scene *scene, uint64_t changes) {

@@ -118,12 +118,24 @@ static rg_result allocate_update(rg_scene *frame, const rg_scene *leader, const 
     return RG_OK;
 }
 
+/* All but its place: that is the leader's, whose rebuild may be writing it. */
+static void copy_object(const rgi_object *from, rgi_object *to) {
+    memset(to, 0, sizeof *to);
+    to->linear = from->linear;
+    to->generation = from->generation;
+    to->shape = from->shape;
+    memcpy(to->position, from->position, sizeof to->position);
+    to->reach = from->reach;
+    to->mask = from->mask;
+    to->grid = from->grid;
+}
+
 static void copy_objects(const rg_scene *leader, const rgi_follower *f, update *u) {
     uint32_t linears = 0;
     for (uint64_t i = 0; i < u->count; i++) {
         copy *c = &u->objects[i];
         c->slot = nth_changed(f, i);
-        c->object = *rgi_scene_object(leader, c->slot);
+        copy_object(rgi_scene_object(leader, c->slot), &c->object);
         c->linear = RGI_NONE;
         if (!c->object.shape) continue;
         rg_shape_retain(c->object.shape);
