@@ -19,6 +19,10 @@ static const struct {
     [GOAL_LASTING] = {{0.95, 0.95, 0.95, 0.95}, 1},
     [GOAL_BYTES] = {{100, 100, 100, 100}, 0},
     [GOAL_TWO_THREADS] = {{1.85, 1.85, 1.85, 1.85}, 1},
+    [GOAL_CHANGE_USUAL] = {{20, 20, 20, 20}, 0},
+    [GOAL_CHANGE_LONGEST] = {{1000, 1000, 1000, 1000}, 0},
+    [GOAL_REBUILD_FRAME] = {{0.8, 0.8, 0.8, 0.8}, 1},
+    [GOAL_REBUILD_MEMORY] = {{2.2, 2.2, 2.2, 2.2}, 0},
 };
 
 struct bench_goal bench_goal(enum bench_aim aim, uint32_t count) {

@@ -24,6 +24,10 @@ enum bench_aim {
     GOAL_LASTING, /* of the speed of a fresh scene */
     GOAL_BYTES,   /* a sphere */
     GOAL_TWO_THREADS,
+    GOAL_CHANGE_USUAL,   /* us: all but one of 10,000 single changes */
+    GOAL_CHANGE_LONGEST, /* us */
+    GOAL_REBUILD_FRAME,  /* of a frame's speed, while a grid is rebuilt */
+    GOAL_REBUILD_MEMORY, /* times what the scene held before */
     GOALS
 };
 

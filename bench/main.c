@@ -17,7 +17,7 @@ struct section {
 static const struct section SECTIONS[] = {
     {"builds", bench_builds, false},      {"traces", bench_traces, false},  {"updates", bench_updates, false},
     {"frames", bench_frames, false},      {"lasting", bench_lasting, true}, {"threads", bench_threads, true},
-    {"omissions", bench_omissions, true},
+    {"omissions", bench_omissions, true}, {"latency", bench_latency, true},
 };
 
 static bool holds_spheres_only(const char *scene) {

@@ -15,6 +15,7 @@ struct bench_effort {
     double checks;       /* about so many brute-force tests for each set of rays */
     uint32_t touched;    /* objects changed one by one in a turn, at most */
     uint32_t churn;      /* changes before the scene is compared with a fresh one */
+    uint32_t calls;      /* timed one by one in each manner */
     int frames;          /* moved, not measured, before the frames that are */
     int shares;          /* of the bodies moved a frame: how many different ones are measured, at most 4 */
 };

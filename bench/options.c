@@ -15,6 +15,7 @@ static const struct bench_effort FULL = {
     .checks = 4e8,
     .touched = 100000,
     .churn = 10000000,
+    .calls = 1000000,
     .frames = 100,
     .shares = 4,
 };
@@ -27,6 +28,7 @@ static const struct bench_effort QUICK = {
     .checks = 1e7,
     .touched = 10000,
     .churn = 100000,
+    .calls = 100000,
     .frames = 10,
     .shares = 2,
 };
@@ -40,6 +42,7 @@ static const struct bench_effort SELFTEST = {
     .checks = 1e6,
     .touched = 100,
     .churn = 1000,
+    .calls = 400,
     .frames = 1,
     .shares = 4,
 };
@@ -52,8 +55,8 @@ static const char USAGE[] =
     "What is measured (lists are separated by commas):\n"
     "  --scene LIST          uniform, mixed, stadium, boxes, capsules, mixture, meshes, gltf\n"
     "  --size LIST           numbers of objects, such as 1000,100000\n"
-    "  --only LIST           sections: builds, traces, updates, frames, lasting, threads,\n"
-    "                        omissions (of the scene uniform, up to 10000 objects unless sizes are given)\n"
+    "  --only LIST           sections: builds, traces, updates, frames, lasting, threads, omissions (up to 10000\n"
+    "                        objects unless sizes are given), latency; the last two of the scene uniform\n"
     "  --rays LIST           of traces: primary, shadow, random, random any, each also with 'aimed ' before it\n"
     "  --mode LIST           of traces, rays a call: 1, 16, batch\n"
     "  --gltf FILE           what the scene gltf shows; its size is its own\n"

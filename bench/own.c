@@ -42,11 +42,11 @@ static rg_shape *create_shape(const struct bench_shape *shape) {
     return result;
 }
 
-static rg_shape *shape_of(const struct own *own, uint32_t body) {
+rg_shape *own_shape_of(const struct own *own, uint32_t body) {
     return own->shapes[own->bodies->shape_of ? own->bodies->shape_of[body] : 0];
 }
 
-static void remember(struct own *own, uint32_t body) {
+void own_remember(struct own *own, uint32_t body) {
     uint32_t slot = RG_OBJECT_SLOT(own->objects[body]);
     if (slot >= own->slots) {
         uint32_t room = 2 * slot + 64;
@@ -58,13 +58,13 @@ static void remember(struct own *own, uint32_t body) {
     own->body_of_slot[slot] = body;
 }
 
-static void insert_all(struct own *own) {
+void own_fill(struct own *own) {
     uint32_t count = own->bodies->count;
     rg_pose *poses = bench_allocate(count, sizeof *poses);
     rg_shape **shapes = bench_allocate(count, sizeof(rg_shape *));
     for (uint32_t i = 0; i < count; i++) {
         poses[i] = bench_pose(own->bodies, i);
-        shapes[i] = shape_of(own, i);
+        shapes[i] = own_shape_of(own, i);
     }
     rg_pose_views pose_views;
     rg_insert_views views = {.size = sizeof views};
@@ -78,22 +78,31 @@ static void insert_all(struct own *own) {
     double before = bench_thread_seconds();
     own_check(rg_scene_insert_many(own->scene, &views, count, &objects));
     own->filling = bench_thread_seconds() - before;
-    for (uint32_t i = 0; i < count; i++) remember(own, i);
+    for (uint32_t i = 0; i < count; i++) own_remember(own, i);
     free(poses);
     free(shapes);
 }
 
-struct own *own_create(const struct bench_scene *bodies, uint32_t workers) {
+struct own *own_create_empty(const struct bench_scene *bodies, uint32_t workers, rg_grid_kind kind) {
     struct own *own = bench_allocate(1, sizeof *own);
     rg_scene_config config;
+    rg_grid_config grid;
     own->bodies = bodies;
+    own_check(rg_grid_config_default(&grid, sizeof grid));
+    grid.kind = kind;
     own_check(rg_scene_config_default(&config, sizeof config));
     config.workers = workers;
+    config.grid = &grid;
     own_check(rg_scene_create(&config, &own->scene));
     own->shapes = bench_allocate((size_t)bodies->shape_count, sizeof(rg_shape *));
     for (int s = 0; s < bodies->shape_count; s++) own->shapes[s] = create_shape(&bodies->shapes[s]);
     own->objects = bench_allocate(bodies->count, sizeof *own->objects);
-    insert_all(own);
+    return own;
+}
+
+struct own *own_create(const struct bench_scene *bodies, uint32_t workers) {
+    struct own *own = own_create_empty(bodies, workers, RG_GRID_DEFAULT);
+    own_fill(own);
     return own;
 }
 
@@ -155,8 +164,8 @@ uint32_t own_body(const struct own *own, uint64_t id) {
 
 void own_insert(struct own *own, uint32_t body) {
     rg_pose pose = bench_pose(own->bodies, body);
-    own_check(rg_scene_insert(own->scene, shape_of(own, body), &pose, &own->objects[body]));
-    remember(own, body);
+    own_check(rg_scene_insert(own->scene, own_shape_of(own, body), &pose, &own->objects[body]));
+    own_remember(own, body);
 }
 
 void own_remove(struct own *own, uint32_t body) {

@@ -19,6 +19,10 @@ struct own {
 struct own *own_create(const struct bench_scene *bodies, uint32_t workers);
 void own_destroy(struct own *own);
 
+/** The same in two steps: without a body in it, its grid of that kind; then all inserted at once. */
+struct own *own_create_empty(const struct bench_scene *bodies, uint32_t workers, rg_grid_kind kind);
+void own_fill(struct own *own);
+
 /** The rays where they lie. */
 rg_ray_views own_ray_views(const struct bench_rays *rays);
 
@@ -31,6 +35,10 @@ uint32_t own_body(const struct own *own, uint64_t id);
 /** Puts a body into the scene, where it must not be; removes one. */
 void own_insert(struct own *own, uint32_t body);
 void own_remove(struct own *own, uint32_t body);
+
+/** For those who insert bodies themselves, own->objects[body]: the shape, and what is to be noted afterwards. */
+rg_shape *own_shape_of(const struct own *own, uint32_t body);
+void own_remember(struct own *own, uint32_t body);
 
 /** Moves objects in one call. */
 void own_move_many(struct own *own, const rg_object *objects, double (*positions)[3], uint32_t count);

@@ -46,6 +46,17 @@ static void print_head(const struct bench_report *report) {
            "goal", "wrong", "t error", "peer's", "t error", "peer's way");
 }
 
+/* A line for each view of the calls. */
+static void print_spread(const struct bench_spread *s) {
+    static const char *const NAMES[SPREAD_VIEWS] = {"all", "undisturbed", "best"};
+    for (int v = 0; v < SPREAD_VIEWS; v++) {
+        if (!s->views[v].calls) continue;
+        printf("%20s %9llu calls, us: p50 %.3g, p99 %.3g, p99.9 %.3g, p99.99 %.3g, max %.4g\n", NAMES[v],
+               (unsigned long long)s->views[v].calls, bench_spread_at(s, v, 0.5), bench_spread_at(s, v, 0.99),
+               bench_spread_at(s, v, 0.999), bench_spread_at(s, v, 0.9999), bench_spread_longest(s, v));
+    }
+}
+
 static void print_line(const struct bench_line *line) {
     char goal[32] = "";
     if (!isnan(line->goal.value)) {
@@ -63,6 +74,7 @@ static void print_line(const struct bench_line *line) {
     print_error(line->error);
     print_error(line->peer_error);
     printf("  %s\n", line->peer_way ? line->peer_way : "");
+    if (line->spread) print_spread(line->spread);
     fflush(stdout);
 }
 
@@ -82,6 +94,21 @@ static void put_error(json_t *object, const char *prefix, const struct exact_err
     json_object_set_new(object, key, error ? json_real(error->worst_t) : json_null());
 }
 
+/* In microseconds. */
+static json_t *times_of(const struct bench_spread *s, enum bench_view view) {
+    if (!s->views[view].calls) return json_null();
+    return json_pack("{s:I, s:f, s:f, s:f, s:f, s:f}", "calls", (json_int_t)s->views[view].calls, "p50",
+                     bench_spread_at(s, view, 0.5), "p99", bench_spread_at(s, view, 0.99), "p99.9",
+                     bench_spread_at(s, view, 0.999), "p99.99", bench_spread_at(s, view, 0.9999), "max",
+                     bench_spread_longest(s, view));
+}
+
+static json_t *spread_of(const struct bench_spread *s) {
+    if (!s) return json_null();
+    return json_pack("{s:o, s:o, s:o}", "all", times_of(s, SPREAD_ALL), "undisturbed", times_of(s, SPREAD_QUIET),
+                     "best", times_of(s, SPREAD_BEST));
+}
+
 static void write_line(const struct bench_report *report, const struct bench_line *line) {
     int state = reached(line);
     json_t *object = json_object();
@@ -98,6 +125,7 @@ static void write_line(const struct bench_report *report, const struct bench_lin
     json_object_set_new(object, "reached", state < 0 ? json_null() : json_boolean(state));
     put_error(object, "", line->error);
     put_error(object, "peer_", line->peer_error);
+    json_object_set_new(object, "spread", spread_of(line->spread));
     json_object_set_new(object, "bytes_per_object", number(line->bytes));
     json_object_set_new(object, "peer_bytes_per_object", number(line->peer_bytes));
     json_object_set_new(object, "threads", json_integer(line->threads));

@@ -5,6 +5,7 @@
 
 #include "exact.h"
 #include "goals.h"
+#include "spread.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -25,6 +26,7 @@ struct bench_line {
     double figure, peer_figure, ratio;
     struct bench_goal goal;
     const struct exact_error *error, *peer_error; /* NULL: rays are not what is measured */
+    const struct bench_spread *spread;            /* of single calls; NULL: they are not what is measured */
     double bytes, peer_bytes;                     /* an object */
     int threads;
     const char *peer_way; /* how the peer did it; NULL: there is none */

@@ -29,6 +29,7 @@ KEYS = {
     'peer_checked': (int, type(None)),
     'peer_wrong': (int, type(None)),
     'peer_worst_t_error': OPTIONAL,
+    'spread': (dict, type(None)),
     'bytes_per_object': NUMBER,
     'peer_bytes_per_object': OPTIONAL,
     'threads': int,
@@ -36,7 +37,7 @@ KEYS = {
     'peer_way': (str, type(None)),
     'versions': dict,
 }
-SECTIONS = {'builds', 'traces', 'updates', 'frames', 'lasting', 'threads', 'omissions'}
+SECTIONS = {'builds', 'traces', 'updates', 'frames', 'lasting', 'threads', 'omissions', 'latency'}
 
 
 def run(*more):
