@@ -26,7 +26,7 @@ enum call { INSERT, MOVE_SMALL, MOVE, JUMP, REMOVE, TRACE, CALLS };
 static const char *const CALL_NAMES[CALLS] = {"insert",        "move by 0.1 r", "move by 1 r",
                                               "move anywhere", "remove",        "trace one ray"};
 
-/* The calls of a scene's life, one after another, and their best times in all turns. */
+/* The calls of a scene's life, one after another, and their best times in all turns; UINT32_MAX: always disturbed. */
 struct record {
     uint32_t count, room; /* calls of the first turn */
     uint32_t at;          /* calls of this one */
@@ -186,6 +186,7 @@ static void report(struct life *life) {
         line.unit = "us";
         line.figure = bench_spread_at(spread, view_of(life), 0.9999);
         line.spread = spread;
+        line.bytes = own_bytes_per_object(life->own);
         line.error = &error;
         if (call != TRACE) line.goal = bench_goal(GOAL_CHANGE_USUAL, count);
         if (call != TRACE) longest = fmax(longest, bench_spread_longest(spread, view_of(life)));
@@ -195,6 +196,7 @@ static void report(struct life *life) {
     struct bench_line line = bench_line("latency", life->bodies->name, count, what);
     line.unit = "us";
     line.figure = longest;
+    line.bytes = own_bytes_per_object(life->own);
     line.goal = bench_goal(GOAL_CHANGE_LONGEST, count);
     line.error = &error;
     bench_report_line(&life->run->report, &line);
@@ -252,8 +254,9 @@ static void record_end_turn(struct record *record) {
 }
 
 static void add_best_times(const struct record *record, struct bench_spread *spreads) {
-    for (uint32_t i = 0; i < record->count && !record->differs; i++)
-        bench_spread_add(&spreads[record->calls[i]], SPREAD_BEST, record->ns[i]);
+    for (uint32_t i = 0; i < record->count && !record->differs; i++) {
+        if (record->ns[i] != UINT32_MAX) bench_spread_add(&spreads[record->calls[i]], SPREAD_BEST, record->ns[i]);
+    }
 }
 
 static void tell(struct bench_run *run, const char *scene, uint32_t count, struct manner manner,
@@ -364,6 +367,7 @@ static void report_batches(struct life *life, double alone, double beside) {
     line.peer_figure = 1e3 * alone;
     line.ratio = alone / beside;
     line.peer_way = "itself, without the changes";
+    line.bytes = own_bytes_per_object(life->own);
     bench_report_line(&life->run->report, &line);
 }
 
@@ -422,6 +426,7 @@ static void commits(struct bench_run *run, const char *scene, uint32_t count) {
         line.figure = line.peer_figure = bench_spread_at(&spread, SPREAD_ALL, 0.5);
         line.spread = &spread;
         line.peer_way = PEER_BUILD_NAMES[BUILDS[b]];
+        line.peer_bytes = peer_bytes_per_object(peer);
         bench_report_line(&run->report, &line);
         peer_destroy(peer);
         bench_scene_destroy(bodies);

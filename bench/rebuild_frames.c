@@ -105,6 +105,7 @@ static void report(struct show *show, const char *what) {
     line.peer_figure = 1e3 * bench_median(show->quiet, show->quiet_count);
     line.ratio = line.peer_figure / line.figure;
     line.peer_way = "itself, quiet";
+    line.bytes = own_bytes_per_object(show->own);
     line.goal = bench_goal(GOAL_REBUILD_FRAME, count);
     line.error = &error;
     if (show->during_count) bench_report_line(&run->report, &line);

@@ -140,7 +140,8 @@ uint64_t bench_watch_stop(struct bench_watch *watch, uint64_t start, struct benc
     uint64_t ns = taken > watch->tick ? taken - watch->tick : 0;
     watch->last = end;
     bench_spread_add(spread, SPREAD_ALL, ns);
-    if (ns < LONG_CALL || !is_disturbed(watch, start, ns)) bench_spread_add(spread, SPREAD_QUIET, ns);
+    if (ns >= LONG_CALL && is_disturbed(watch, start, ns)) return BENCH_DISTURBED;
+    bench_spread_add(spread, SPREAD_QUIET, ns);
     return ns;
 }
 

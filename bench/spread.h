@@ -4,12 +4,12 @@
  *
  * On a machine that others use, the longest calls are those that the machine disturbed. They are told from the
  * others in two ways:
- *   - A call that takes long is "disturbed" if for a quarter of its time or more this thread neither ran nor slept
- * (the system or a hypervisor had taken the processor away), or threads of the process waited for a processor: the
- * one, maybe, that held the scene. Linux counts for each thread how long it so waited (/proc/self/task/N/schedstat,
- *     its second number); where there is no such file, only the first is known.
- *   - Where the same calls are made several times over, in scenes that are alike to the bit, what the library does
- * takes long in each of them, what the machine does in one: so the "best" time of each call is kept.
+ * A call that takes long is "disturbed" if for a quarter of its time or more this thread neither ran nor slept (the
+ * system or a hypervisor had taken the processor away), or threads of the process waited for a processor: the one,
+ * maybe, that held the scene. Linux counts for each thread how long it so waited (/proc/self/task/N/schedstat, its
+ * second number); where there is no such file, only the first is known.
+ * Where the same calls are made several times over, in scenes that are alike to the bit, what the library does takes
+ * long in each of them, what the machine does in one: so the "best" undisturbed time of each call is kept.
  */
 #ifndef RAYGRID_BENCH_SPREAD_H
 #define RAYGRID_BENCH_SPREAD_H
@@ -56,7 +56,9 @@ struct bench_watch {
 void bench_watch_begin(struct bench_watch *watch);
 void bench_watch_end(struct bench_watch *watch);
 
-/** Right before a call; its result goes to bench_watch_stop, right after the call, which returns its time in ns. */
+/** Right before a call; its result goes to bench_watch_stop, right after the call, which returns its time in
+ * ns, BENCH_DISTURBED if it was. */
+#define BENCH_DISTURBED UINT64_MAX
 uint64_t bench_watch_start(struct bench_watch *watch);
 uint64_t bench_watch_stop(struct bench_watch *watch, uint64_t start, struct bench_spread *spread);
 

@@ -30,7 +30,7 @@ KEYS = {
     'peer_wrong': (int, type(None)),
     'peer_worst_t_error': OPTIONAL,
     'spread': (dict, type(None)),
-    'bytes_per_object': NUMBER,
+    'bytes_per_object': OPTIONAL,
     'peer_bytes_per_object': OPTIONAL,
     'threads': int,
     'isa': str,
