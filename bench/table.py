@@ -8,6 +8,10 @@ import sys
 HEAD = ('| what | figure | | peer | ratio | goal | wrong | t error | peer: wrong | t error | peer: way |\n'
         '|---|---|---|---|---|---|---|---|---|---|---|')
 
+CALLS_HEAD = ('| single calls, us | all: p50 | p99 | p99.9 | p99.99 | max | undisturbed: p99.99 | max '
+              '| best: p99.99 | max | goal for p99.99 | wrong |\n'
+              '|---|---|---|---|---|---|---|---|---|---|---|---|')
+
 
 def short(number):
     """Three digits, thousands whole."""
@@ -37,6 +41,29 @@ def row(line):
     return '| ' + ' | '.join(cells) + ' |'
 
 
+def row_of_calls(line):
+    """Times of single calls: all, those that the machine left alone, the best of several runs of each."""
+    cells = [line['name'].split('/', 1)[1]]
+    for view, parts in (('all', ('p50', 'p99', 'p99.9', 'p99.99', 'max')), ('undisturbed', ('p99.99', 'max')),
+                        ('best', ('p99.99', 'max'))):
+        times = line['spread'][view] or {}
+        cells += [short(times.get(part)) for part in parts]
+    cells += [goal(line), errors(line, '')[0]]
+    return '| ' + ' | '.join(cells) + ' |'
+
+
+def tables(section, lines):
+    """Of the section's figures, and of its times of single calls."""
+    figures = [row(line) for line in lines if not line['spread']]
+    calls = [row_of_calls(line) for line in lines if line['spread']]
+    parts = [f'### {section}']
+    if figures:
+        parts.append('\n'.join([HEAD, *figures]))
+    if calls:
+        parts.append('\n'.join([CALLS_HEAD, *calls]))
+    return parts
+
+
 def markdown(lines):
     """All tables, with what ran above them and what was missed below."""
     parts = []
@@ -46,8 +73,7 @@ def markdown(lines):
         parts.append(f"raygrid {versions['raygrid']} (instructions: {first['isa']}), {versions['compiler']}; "
                      f"peer: {versions['peer'] or 'none'}.")
     for section in dict.fromkeys(line['name'].split('/')[0] for line in lines):
-        rows = [row(line) for line in lines if line['name'].split('/')[0] == section]
-        parts.append('\n'.join([f'### {section}', '', HEAD, *rows]))
+        parts += tables(section, [line for line in lines if line['name'].split('/')[0] == section])
     missed = [line for line in lines if line['reached'] is False]
     aimed = sum(line['reached'] is not None for line in lines)
     parts.append(f'{aimed - len(missed)} of {aimed} goals reached; '
