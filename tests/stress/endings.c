@@ -172,6 +172,21 @@ static void fail_to_create(rg_grid_kind kind, uint32_t workers) {
     }
 }
 
+/* A scene outlives its frames. */
+static void destroy_with_frame(rg_grid_kind kind, uint32_t workers) {
+    static struct field field;
+    rg_scene *frame = NULL, *scene;
+    field_begin(&field, kind, workers);
+    scene = field.scene;
+    MUST(rg_scene_create_frame(scene, NULL, &frame));
+    field_move(&field, 500);
+    demand(rg_scene_destroy(&scene) == RG_BUSY && scene == field.scene, "a scene with a frame can't be destroyed");
+    MUST(rg_scene_update_frame(frame));
+    MUST(rg_scene_destroy(&frame));
+    field_check(&field);
+    field_end(&field);
+}
+
 /* ----------------------------------------------------------------------------------- from inside a callback */
 
 static int32_t destroy_from_inside(void *user, const rg_local_ray *ray, rg_local_hit *hit) {
@@ -216,6 +231,7 @@ int main(void) {
             destroy_while_rebuilding(KINDS[k], workers);
             destroy_after_failures(KINDS[k], workers);
             fail_to_create(KINDS[k], workers);
+            destroy_with_frame(KINDS[k], workers);
             destroy_inside(KINDS[k], workers);
             destroy_while_traced(KINDS[k], workers, false);
             destroy_while_traced(KINDS[k], workers, true);

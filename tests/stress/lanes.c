@@ -221,27 +221,24 @@ static bool shows(const struct lanes *lanes, int lane, uint64_t number, bool bac
     return hit->object != RG_NO_OBJECT && fabs(hit->t - ((backward ? -x : x) + FAR_AWAY - 1)) <= 0x1p-30;
 }
 
-bool lane_judge(const struct lanes *lanes, int which, uint64_t from, bool backward, const rg_hit *hit,
+bool lane_judge(const struct lanes *lanes, int which, struct lane_span span, bool backward, const rg_hit *hit,
                 const char **why) {
-    const struct lane *lane = &lanes->all[which];
-    uint64_t to = __atomic_load_n(&lane->begun, __ATOMIC_SEQ_CST);
-    for (uint64_t number = from; number <= to; number++) {
+    for (uint64_t number = span.from; number <= span.to; number++) {
         if (!shows(lanes, which, number, backward, hit)) continue;
-        rg_object id = hit->object == RG_NO_OBJECT ? RG_NO_OBJECT : id_of(lane, number);
+        rg_object id = hit->object == RG_NO_OBJECT ? RG_NO_OBJECT : id_of(&lanes->all[which], number);
         *why = "the right place under the id of another object";
         return id == RG_NO_OBJECT || id == hit->object;
     }
     bool was = false;
-    for (uint64_t number = 0; number < from; number++) was |= shows(lanes, which, number, backward, hit);
+    for (uint64_t number = 0; number < span.from; number++) was |= shows(lanes, which, number, backward, hit);
     *why = hit->object == RG_NO_OBJECT ? "nothing, where something was all the time"
            : was                       ? "a ghost: where the object had been before the call began"
                                        : "a place where the object never was";
     return false;
 }
 
-bool lane_judge_occluded(const struct lanes *lanes, int which, uint64_t from, bool occluded) {
-    uint64_t to = __atomic_load_n(&lanes->all[which].begun, __ATOMIC_SEQ_CST);
-    for (uint64_t number = from; number <= to; number++) {
+bool lane_judge_occluded(const struct lanes *lanes, int which, struct lane_span span, bool occluded) {
+    for (uint64_t number = span.from; number <= span.to; number++) {
         if ((lane_state_of(lanes, which, number) == LANE_SEEN) == occluded) return true;
     }
     return false;

@@ -58,13 +58,26 @@ int lanes_move_together(struct lanes *lanes, int first, int count);
 /** The ray of a lane, forward or backward. */
 rg_ray lane_ray(int lane, bool backward);
 
-/** Judges what the ray of a lane saw in a call before which the lane's `done` was `from`. Returns whether it is one
- * of the states since then; `why` tells what is wrong. */
-bool lane_judge(const struct lanes *lanes, int lane, uint64_t from, bool backward, const rg_hit *hit,
+/** The states that a call may have seen: from the last that was done before it to the last that began before its
+ * end. */
+struct lane_span {
+    uint64_t from, to;
+};
+
+static inline uint64_t lane_done(const struct lanes *lanes, int lane) {
+    return __atomic_load_n(&lanes->all[lane].done, __ATOMIC_SEQ_CST);
+}
+
+static inline uint64_t lane_begun(const struct lanes *lanes, int lane) {
+    return __atomic_load_n(&lanes->all[lane].begun, __ATOMIC_SEQ_CST);
+}
+
+/** Judges what the ray of a lane saw. Returns whether it is one of these states; `why` tells what is wrong. */
+bool lane_judge(const struct lanes *lanes, int lane, struct lane_span span, bool backward, const rg_hit *hit,
                 const char **why);
 
 /** The same for whether anything is there. */
-bool lane_judge_occluded(const struct lanes *lanes, int lane, uint64_t from, bool occluded);
+bool lane_judge_occluded(const struct lanes *lanes, int lane, struct lane_span span, bool occluded);
 
 /** How many objects there are now; no change may be under way. */
 uint64_t lanes_count(const struct lanes *lanes);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * stress: threads that insert, move, hide and remove objects at random while others trace them, one ray or hundreds a
- * call, in grids of all kinds that have to be rebuilt again and again meanwhile, in scenes with 1, 2 and 4 workers.
- * Every answer is judged: see lanes.h.
+ * call, in grids of all kinds that have to be rebuilt again and again meanwhile, in scenes with 1, 2 and 4 workers;
+ * and one that traces a frame of the scene and brings it up to date. Every answer is judged: see lanes.h.
  *
  * stress [--seconds N] [--rounds N] [--seed N]: so many rounds of changes of each lane in each scene; with seconds,
  * scene after scene with other seeds until they are over.
@@ -16,9 +16,16 @@
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-enum { WRITERS = 2, TRACERS = 2, MOST_RAYS = 1500, REBUILD_EVERY = 20 /* rounds: by a call */ };
+enum {
+    WRITERS = 2,
+    TRACERS = 2,
+    THREADS = WRITERS + TRACERS + 1,
+    MOST_RAYS = 1500,
+    REBUILD_EVERY = 20 /* rounds: by a call */
+};
 
 static const uint32_t WORKERS[] = {1, 2, 4};
 
@@ -77,12 +84,12 @@ struct rays {
     uint8_t occluded[MOST_RAYS];
     int lanes[MOST_RAYS];
     bool backward[MOST_RAYS];
-    uint64_t from[MOST_RAYS];
+    struct lane_span spans[MOST_RAYS];
     int count;
 };
 
 /* In any order, or lane by lane, so that they go together. */
-static void choose(const struct run *run, struct rays *r, random_source *random) {
+static void choose(struct rays *r, random_source *random) {
     static const int counts[] = {1, 1, 16, 100, 600, MOST_RAYS};
     int first = (int)random_below(random, LANES);
     bool in_order = random_once_in(random, 2);
@@ -92,32 +99,48 @@ static void choose(const struct run *run, struct rays *r, random_source *random)
         r->backward[i] = in_order ? first % 2 : random_once_in(random, 2);
         r->rays[i] = lane_ray(r->lanes[i], r->backward[i]);
     }
-    for (int i = 0; i < r->count; i++)
-        r->from[i] = __atomic_load_n(&run->lanes.all[r->lanes[i]].done, __ATOMIC_SEQ_CST);
+}
+
+static void look_before(const struct run *run, struct rays *r) {
+    for (int i = 0; i < r->count; i++) r->spans[i].from = lane_done(&run->lanes, r->lanes[i]);
+}
+
+static void look_after(const struct run *run, struct rays *r) {
+    for (int i = 0; i < r->count; i++) r->spans[i].to = lane_begun(&run->lanes, r->lanes[i]);
 }
 
 static void complain(struct run *run, const struct rays *r, int i, const char *why) {
     if (__atomic_add_fetch(&run->failures, 1, __ATOMIC_SEQ_CST) > 10) return;
-    const struct lane *lane = &run->lanes.all[r->lanes[i]];
-    fprintf(stderr, "FAILED: ray %d of %d, lane %d, states from %" PRIu64 " to %" PRIu64 " or before: t = %a, %s\n",
-            i, r->count, r->lanes[i], r->from[i], __atomic_load_n(&lane->begun, __ATOMIC_SEQ_CST), r->hits[i].t, why);
+    fprintf(stderr,
+            "FAILED: seed %" PRIu64 ", ray %d of %d, lane %d, states %" PRIu64 " to %" PRIu64 ": t = %a, %s\n",
+            run->seed, i, r->count, r->lanes[i], r->spans[i].from, r->spans[i].to, r->hits[i].t, why);
+}
+
+static void judge(struct run *run, struct rays *r) {
+    const char *why;
+    for (int i = 0; i < r->count; i++) {
+        if (!lane_judge(&run->lanes, r->lanes[i], r->spans[i], r->backward[i], &r->hits[i], &why))
+            complain(run, r, i, why);
+    }
+    __atomic_fetch_add(&run->rays, (uint64_t)r->count, __ATOMIC_RELAXED);
 }
 
 static void trace_closest(struct run *run, struct rays *r) {
-    const char *why;
+    look_before(run, r);
     MUST(rg_scene_trace(run->lanes.scene, r->rays, r->hits, (uint64_t)r->count));
-    for (int i = 0; i < r->count; i++) {
-        if (!lane_judge(&run->lanes, r->lanes[i], r->from[i], r->backward[i], &r->hits[i], &why))
-            complain(run, r, i, why);
-    }
+    look_after(run, r);
+    judge(run, r);
 }
 
 static void trace_any(struct run *run, struct rays *r) {
+    look_before(run, r);
     MUST(rg_scene_occluded(run->lanes.scene, r->rays, r->occluded, (uint64_t)r->count));
+    look_after(run, r);
     for (int i = 0; i < r->count; i++) {
-        if (!lane_judge_occluded(&run->lanes, r->lanes[i], r->from[i], r->occluded[i]))
+        if (!lane_judge_occluded(&run->lanes, r->lanes[i], r->spans[i], r->occluded[i]))
             complain(run, r, i, r->occluded[i] ? "occluded by nothing" : "not occluded");
     }
+    __atomic_fetch_add(&run->rays, (uint64_t)r->count, __ATOMIC_RELAXED);
 }
 
 static void *trace_lanes(void *argument) {
@@ -127,15 +150,47 @@ static void *trace_lanes(void *argument) {
     struct rays *r = calloc(1, sizeof *r);
     if (!r) exit(EXIT_FAILURE);
     do {
-        choose(run, r, &random);
+        choose(r, &random);
         if (random_once_in(&random, 3)) {
             trace_any(run, r);
         } else {
             trace_closest(run, r);
         }
-        __atomic_fetch_add(&run->rays, (uint64_t)r->count, __ATOMIC_RELAXED);
     } while (__atomic_load_n(&run->writing, __ATOMIC_SEQ_CST));
     free(r);
+    return NULL;
+}
+
+/* A frame shows what was there at one instant of its update, and goes on to show it. */
+static void trace_updates(struct run *run, rg_scene *frame, struct rays *r, rg_hit *again) {
+    look_before(run, r);
+    MUST(rg_scene_update_frame(frame));
+    look_after(run, r);
+    MUST(rg_scene_trace(frame, r->rays, r->hits, (uint64_t)r->count));
+    judge(run, r);
+    MUST(rg_scene_trace(frame, r->rays, again, (uint64_t)r->count));
+    if (memcmp(r->hits, again, (size_t)r->count * sizeof *again) != 0) complain(run, r, 0, "a frame has changed");
+}
+
+static void *trace_frame(void *argument) {
+    const struct worker *worker = argument;
+    struct run *run = worker->run;
+    random_source random = {run->seed + (uint64_t)worker->number};
+    struct books books = {0};
+    const rg_scene_config config = {
+        .size = sizeof config, .workers = 1 + (uint32_t)(run->seed % 2), .allocator = books_hooks(&books)};
+    rg_scene *frame = NULL;
+    struct rays *r = calloc(1, sizeof *r);
+    rg_hit *again = calloc(MOST_RAYS, sizeof *again);
+    if (!r || !again) exit(EXIT_FAILURE);
+    MUST(rg_scene_create_frame(run->lanes.scene, &config, &frame));
+    do {
+        choose(r, &random);
+        trace_updates(run, frame, r, again);
+    } while (__atomic_load_n(&run->writing, __ATOMIC_SEQ_CST));
+    destroy_scene(&books, &frame);
+    free(r);
+    free(again);
     return NULL;
 }
 
@@ -150,23 +205,24 @@ static void judge_at_rest(struct run *run) {
         const rg_ray ray = lane_ray(i, false);
         rg_hit hit;
         MUST(rg_scene_trace(lanes->scene, &ray, &hit, 1));
-        demand(lane_judge(lanes, i, lanes->all[i].done, false, &hit, &why), "at rest every object is where it is");
+        const struct lane_span now = {lane_done(lanes, i), lane_done(lanes, i)};
+        demand(lane_judge(lanes, i, now, false, &hit, &why), "at rest every object is where it is");
     }
     MUST(rg_scene_stats(lanes->scene, &report));
     demand(report.objects == lanes_count(lanes), "at rest there are as many objects as were left");
 }
 
 static void start_all(struct run *run) {
-    pthread_t threads[WRITERS + TRACERS];
-    struct worker workers[WRITERS + TRACERS];
+    pthread_t threads[THREADS];
+    struct worker workers[THREADS];
     run->writing = WRITERS;
     if (pthread_barrier_init(&run->barrier, NULL, WRITERS)) exit(EXIT_FAILURE);
-    for (int i = 0; i < WRITERS + TRACERS; i++) {
+    for (int i = 0; i < THREADS; i++) {
         workers[i] = (struct worker){run, i};
-        if (pthread_create(&threads[i], NULL, i < WRITERS ? write_lanes : trace_lanes, &workers[i]))
-            exit(EXIT_FAILURE);
+        void *(*work)(void *) = i < WRITERS ? write_lanes : i < WRITERS + TRACERS ? trace_lanes : trace_frame;
+        if (pthread_create(&threads[i], NULL, work, &workers[i])) exit(EXIT_FAILURE);
     }
-    for (int i = 0; i < WRITERS + TRACERS; i++) pthread_join(threads[i], NULL);
+    for (int i = 0; i < THREADS; i++) pthread_join(threads[i], NULL);
     pthread_barrier_destroy(&run->barrier);
 }
 
