@@ -63,7 +63,7 @@ static void tracer_begin(struct tracer *tracer, struct field *field, struct gate
     tracer->rays = calloc(BATCHES * FIELD, sizeof *tracer->rays);
     tracer->hits = calloc(BATCHES * FIELD, sizeof *tracer->hits);
     demand(tracer->rays && tracer->hits, "memory");
-    for (int b = 0; b < BATCHES; b++) field_rays(tracer->rays + b * FIELD);
+    for (int b = 0; b < BATCHES; b++) field_rays(field, tracer->rays + b * FIELD);
     /* In place of the first. */
     tracer->rays[0] = rg_ray_from(origin, direction);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * field.h: a scene of balls on a square lattice, each with a ray of its own that must hit it: for tests of what may
- * happen to a scene as a whole.
+ * field.h: a scene of balls on a square lattice, each with a ray of its own that must hit it, of every second one
+ * from the side, at the very place where it is: for tests of what may happen to a scene as a whole.
  */
 #ifndef RAYGRID_TESTS_STRESS_FIELD_H
 #define RAYGRID_TESTS_STRESS_FIELD_H
@@ -29,8 +29,8 @@ void field_move_until_rebuilding(struct field *field);
 /** Traces the rays of all, in one call, and demands that each hits its ball. */
 void field_check(const struct field *field);
 
-/** The same by a judge of one's own: rays, and whether the hits are those that they must be. */
-void field_rays(rg_ray rays[FIELD]);
+/** In two steps: the rays to the balls where they are now; whether the hits are those that they must be. */
+void field_rays(const struct field *field, rg_ray rays[FIELD]);
 bool field_is_right(const struct field *field, const rg_hit hits[FIELD]);
 
 /** Destroys the scene, and demands that nothing is left. */

@@ -194,12 +194,27 @@ uint64_t lanes_count(const struct lanes *lanes) {
 
 /* ------------------------------------------------------------------------------------------------ judging */
 
-rg_ray lane_ray(int lane, bool backward) {
-    const double origin[3] = {backward ? FAR_AWAY : -FAR_AWAY, APART * (lane % ROW), APART * (lane / ROW)};
-    const double direction[3] = {backward ? -1 : 1, 0, 0};
-    rg_ray ray = rg_ray_from(origin, direction);
+/* Across: from between the lanes to the middle of this one. */
+static const double ASIDE = 1.5;
+
+rg_ray lane_ray(const struct lanes *lanes, const struct lane_look *look) {
+    const double y = APART * (look->lane % ROW), z = APART * (look->lane / ROW);
+    const double along[3] = {look->way == LANE_BACKWARD ? FAR_AWAY : -FAR_AWAY, y, z};
+    const double aside[3] = {lane_x(lanes, look->lane, look->aim), y, z - ASIDE};
+    const double direction[LANE_WAYS][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
+    rg_ray ray = rg_ray_from(look->way == LANE_ACROSS ? aside : along, direction[look->way]);
+    if (look->way == LANE_ACROSS) ray.t_max = ASIDE;
     ray.mask = RAY_MASK;
     return ray;
+}
+
+/* The t that a state shows, +inf for none; NaN if it may be any: what looks across just misses the middle. */
+static double t_of(const struct lanes *lanes, const struct lane_look *look, uint64_t number) {
+    if (lane_state_of(lanes, look->lane, number) != LANE_SEEN) return INFINITY;
+    double x = lane_x(lanes, look->lane, number);
+    if (look->way != LANE_ACROSS) return (look->way == LANE_BACKWARD ? -x : x) + FAR_AWAY - 1;
+    double beside = fabs(x - lane_x(lanes, look->lane, look->aim));
+    return beside == 0 ? ASIDE - 1 : beside < 2 ? (double)NAN : INFINITY;
 }
 
 /* The id of what a state shows, once its change is done; 0 if it has been forgotten. */
@@ -215,31 +230,40 @@ static rg_object id_of(const struct lane *lane, uint64_t number) {
     return kept ? id : RG_NO_OBJECT;
 }
 
-static bool shows(const struct lanes *lanes, int lane, uint64_t number, bool backward, const rg_hit *hit) {
-    if (lane_state_of(lanes, lane, number) != LANE_SEEN) return hit->object == RG_NO_OBJECT && hit->t == INFINITY;
-    double x = lane_x(lanes, lane, number);
-    return hit->object != RG_NO_OBJECT && fabs(hit->t - ((backward ? -x : x) + FAR_AWAY - 1)) <= 0x1p-30;
+static bool shows(const struct lanes *lanes, const struct lane_look *look, uint64_t number, const rg_hit *hit) {
+    double t = t_of(lanes, look, number);
+    if (isnan(t)) return true;
+    if (t == INFINITY) return hit->object == RG_NO_OBJECT && hit->t == INFINITY;
+    return hit->object != RG_NO_OBJECT && fabs(hit->t - t) <= 0x1p-30;
 }
 
-bool lane_judge(const struct lanes *lanes, int which, struct lane_span span, bool backward, const rg_hit *hit,
+/* Whether a hit that may be of this state is of the object that was there then. */
+static bool has_id(const struct lanes *lanes, const struct lane_look *look, uint64_t number, const rg_hit *hit) {
+    rg_object id = hit->object == RG_NO_OBJECT ? RG_NO_OBJECT : id_of(&lanes->all[look->lane], number);
+    return id == RG_NO_OBJECT || id == hit->object;
+}
+
+bool lane_judge(const struct lanes *lanes, const struct lane_look *look, struct lane_span span, const rg_hit *hit,
                 const char **why) {
+    bool placed = false, was = false;
     for (uint64_t number = span.from; number <= span.to; number++) {
-        if (!shows(lanes, which, number, backward, hit)) continue;
-        rg_object id = hit->object == RG_NO_OBJECT ? RG_NO_OBJECT : id_of(&lanes->all[which], number);
-        *why = "the right place under the id of another object";
-        return id == RG_NO_OBJECT || id == hit->object;
+        if (!shows(lanes, look, number, hit)) continue;
+        if (has_id(lanes, look, number, hit)) return true;
+        placed = true;
     }
-    bool was = false;
-    for (uint64_t number = 0; number < span.from; number++) was |= shows(lanes, which, number, backward, hit);
-    *why = hit->object == RG_NO_OBJECT ? "nothing, where something was all the time"
-           : was                       ? "a ghost: where the object had been before the call began"
-                                       : "a place where the object never was";
+    for (uint64_t number = 0; number < span.from; number++) was |= shows(lanes, look, number, hit);
+    *why = placed                        ? "the right place under the id of another object"
+           : hit->object == RG_NO_OBJECT ? "nothing, where something was all the time"
+           : was                         ? "a ghost: where the object had been before the call began"
+                                         : "a place where the object never was";
     return false;
 }
 
-bool lane_judge_occluded(const struct lanes *lanes, int which, struct lane_span span, bool occluded) {
+bool lane_judge_occluded(const struct lanes *lanes, const struct lane_look *look, struct lane_span span,
+                         bool occluded) {
     for (uint64_t number = span.from; number <= span.to; number++) {
-        if ((lane_state_of(lanes, which, number) == LANE_SEEN) == occluded) return true;
+        double t = t_of(lanes, look, number);
+        if (isnan(t) || (t < INFINITY) == occluded) return true;
     }
     return false;
 }

@@ -55,8 +55,20 @@ void lane_advance(struct lanes *lanes, int lane);
  * many of those from `first` on it could take so. */
 int lanes_move_together(struct lanes *lanes, int first, int count);
 
-/** The ray of a lane, forward or backward. */
-rg_ray lane_ray(int lane, bool backward);
+/**
+ * How rays look at a lane: along it, which finds the object wherever it is, also if the grid has it somewhere else in
+ * the lane; or across it, at the very place of one of its states, which finds it only where it is to be found.
+ */
+enum lane_way { LANE_FORWARD, LANE_BACKWARD, LANE_ACROSS, LANE_WAYS };
+
+/** A ray into a lane. */
+struct lane_look {
+    int lane;
+    enum lane_way way;
+    uint64_t aim; /* the state at which it looks across */
+};
+
+rg_ray lane_ray(const struct lanes *lanes, const struct lane_look *look);
 
 /** The states that a call may have seen: from the last that was done before it to the last that began before its
  * end. */
@@ -73,11 +85,12 @@ static inline uint64_t lane_begun(const struct lanes *lanes, int lane) {
 }
 
 /** Judges what the ray of a lane saw. Returns whether it is one of these states; `why` tells what is wrong. */
-bool lane_judge(const struct lanes *lanes, int lane, struct lane_span span, bool backward, const rg_hit *hit,
+bool lane_judge(const struct lanes *lanes, const struct lane_look *look, struct lane_span span, const rg_hit *hit,
                 const char **why);
 
 /** The same for whether anything is there. */
-bool lane_judge_occluded(const struct lanes *lanes, int lane, struct lane_span span, bool occluded);
+bool lane_judge_occluded(const struct lanes *lanes, const struct lane_look *look, struct lane_span span,
+                         bool occluded);
 
 /** How many objects there are now; no change may be under way. */
 uint64_t lanes_count(const struct lanes *lanes);

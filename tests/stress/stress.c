@@ -82,8 +82,7 @@ struct rays {
     rg_ray rays[MOST_RAYS];
     rg_hit hits[MOST_RAYS];
     uint8_t occluded[MOST_RAYS];
-    int lanes[MOST_RAYS];
-    bool backward[MOST_RAYS];
+    struct lane_look looks[MOST_RAYS];
     struct lane_span spans[MOST_RAYS];
     int count;
 };
@@ -95,32 +94,37 @@ static void choose(struct rays *r, random_source *random) {
     bool in_order = random_once_in(random, 2);
     r->count = counts[random_below(random, sizeof counts / sizeof *counts)];
     for (int i = 0; i < r->count; i++) {
-        r->lanes[i] = in_order ? (first + i) % LANES : (int)random_below(random, LANES);
-        r->backward[i] = in_order ? first % 2 : random_once_in(random, 2);
-        r->rays[i] = lane_ray(r->lanes[i], r->backward[i]);
+        r->looks[i].lane = in_order ? (first + i) % LANES : (int)random_below(random, LANES);
+        r->looks[i].way =
+            in_order ? (enum lane_way)(first % LANE_WAYS) : (enum lane_way)random_below(random, LANE_WAYS);
     }
 }
 
 static void look_before(const struct run *run, struct rays *r) {
-    for (int i = 0; i < r->count; i++) r->spans[i].from = lane_done(&run->lanes, r->lanes[i]);
+    for (int i = 0; i < r->count; i++) {
+        struct lane_look *look = &r->looks[i];
+        r->spans[i].from = look->aim = lane_done(&run->lanes, look->lane);
+        r->rays[i] = lane_ray(&run->lanes, look);
+    }
 }
 
 static void look_after(const struct run *run, struct rays *r) {
-    for (int i = 0; i < r->count; i++) r->spans[i].to = lane_begun(&run->lanes, r->lanes[i]);
+    for (int i = 0; i < r->count; i++) r->spans[i].to = lane_begun(&run->lanes, r->looks[i].lane);
 }
 
 static void complain(struct run *run, const struct rays *r, int i, const char *why) {
     if (__atomic_add_fetch(&run->failures, 1, __ATOMIC_SEQ_CST) > 10) return;
     fprintf(stderr,
-            "FAILED: seed %" PRIu64 ", ray %d of %d, lane %d, states %" PRIu64 " to %" PRIu64 ": t = %a, %s\n",
-            run->seed, i, r->count, r->lanes[i], r->spans[i].from, r->spans[i].to, r->hits[i].t, why);
+            "FAILED: seed %" PRIu64 ", ray %d of %d, lane %d, way %d, states %" PRIu64 " to %" PRIu64
+            ": t = %a, %s\n",
+            run->seed, i, r->count, r->looks[i].lane, (int)r->looks[i].way, r->spans[i].from, r->spans[i].to,
+            r->hits[i].t, why);
 }
 
 static void judge(struct run *run, struct rays *r) {
     const char *why;
     for (int i = 0; i < r->count; i++) {
-        if (!lane_judge(&run->lanes, r->lanes[i], r->spans[i], r->backward[i], &r->hits[i], &why))
-            complain(run, r, i, why);
+        if (!lane_judge(&run->lanes, &r->looks[i], r->spans[i], &r->hits[i], &why)) complain(run, r, i, why);
     }
     __atomic_fetch_add(&run->rays, (uint64_t)r->count, __ATOMIC_RELAXED);
 }
@@ -137,7 +141,7 @@ static void trace_any(struct run *run, struct rays *r) {
     MUST(rg_scene_occluded(run->lanes.scene, r->rays, r->occluded, (uint64_t)r->count));
     look_after(run, r);
     for (int i = 0; i < r->count; i++) {
-        if (!lane_judge_occluded(&run->lanes, r->lanes[i], r->spans[i], r->occluded[i]))
+        if (!lane_judge_occluded(&run->lanes, &r->looks[i], r->spans[i], r->occluded[i]))
             complain(run, r, i, r->occluded[i] ? "occluded by nothing" : "not occluded");
     }
     __atomic_fetch_add(&run->rays, (uint64_t)r->count, __ATOMIC_RELAXED);
@@ -202,11 +206,12 @@ static void judge_at_rest(struct run *run) {
     rg_scene_report report = {.size = sizeof report};
     for (int i = 0; i < LANES; i++) {
         const char *why;
-        const rg_ray ray = lane_ray(i, false);
+        const struct lane_span now = {lane_done(lanes, i), lane_done(lanes, i)};
+        const struct lane_look look = {i, LANE_ACROSS, now.from};
+        const rg_ray ray = lane_ray(lanes, &look);
         rg_hit hit;
         MUST(rg_scene_trace(lanes->scene, &ray, &hit, 1));
-        const struct lane_span now = {lane_done(lanes, i), lane_done(lanes, i)};
-        demand(lane_judge(lanes, i, now, false, &hit, &why), "at rest every object is where it is");
+        demand(lane_judge(lanes, &look, now, &hit, &why), "at rest every object is where it is");
     }
     MUST(rg_scene_stats(lanes->scene, &report));
     demand(report.objects == lanes_count(lanes), "at rest there are as many objects as were left");
