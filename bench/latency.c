@@ -209,7 +209,7 @@ struct manner {
     uint32_t workers;
 };
 
-static const char *kind_name(rg_grid_kind kind) {
+const char *bench_kind_name(rg_grid_kind kind) {
     static const char *const names[] = {"default", "uniform", "hierarchical", "loose"};
     return names[kind];
 }
@@ -243,7 +243,7 @@ static void life_end(struct life *life) {
 }
 
 static void name_life(struct life *life, struct manner manner, const char *what) {
-    snprintf(life->what, sizeof life->what, "%s, %u worker%s, %s", kind_name(manner.kind), manner.workers,
+    snprintf(life->what, sizeof life->what, "%s, %u worker%s, %s", bench_kind_name(manner.kind), manner.workers,
              manner.workers > 1 ? "s" : "", what);
 }
 
@@ -451,11 +451,12 @@ void bench_latency(struct bench_run *run, const char *scene, uint32_t count) {
     if (strcmp(scene, "uniform") != 0) return;
     idle(run, scene, count);
     for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
-        for (uint32_t workers = 2; workers > 0; workers--) {
+        for (uint32_t workers = 2; workers > 0 && bench_wanted(run->options.modes, bench_kind_name(KINDS[k]));
+             workers--) {
             const struct manner manner = {KINDS[k], workers};
             for (size_t s = 0; s < sizeof STORIES / sizeof *STORIES; s++)
                 tell(run, scene, count, manner, &STORIES[s]);
-            beside_batch(run, scene, count, manner);
+            if (KINDS[k] == RG_GRID_LOOSE) beside_batch(run, scene, count, manner);
             bench_rebuild_frames(run, scene, count, KINDS[k], workers);
         }
     }

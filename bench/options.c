@@ -58,7 +58,7 @@ static const char USAGE[] =
     "  --only LIST           sections: builds, traces, updates, frames, lasting, threads, omissions (up to 10000\n"
     "                        objects unless sizes are given), latency; the last two of the scene uniform\n"
     "  --rays LIST           of traces: primary, shadow, random, random any, each also with 'aimed ' before it\n"
-    "  --mode LIST           of traces, rays a call: 1, 16, batch\n"
+    "  --mode LIST           of traces, rays a call: 1, 16, batch; of latency, grids: loose, hierarchical, uniform\n"
     "  --gltf FILE           what the scene gltf shows; its size is its own\n"
     "The peer:\n"
     "  --embree WHAT         auto (what the system has; the default), none, or the path of libembree3 or 4\n"

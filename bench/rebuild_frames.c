@@ -123,7 +123,6 @@ static void report(struct show *show, const char *what) {
 
 void bench_rebuild_frames(struct bench_run *run, const char *scene, uint32_t count, rg_grid_kind kind,
                           uint32_t workers) {
-    static const char *const names[] = {"default", "uniform", "hierarchical", "loose"};
     char what[64];
     struct bench_scene *bodies = bench_scene_of(run, scene, count);
     if (!bodies) return;
@@ -138,7 +137,8 @@ void bench_rebuild_frames(struct bench_run *run, const char *scene, uint32_t cou
     show->rays = bench_primary_rays(bodies, run->options.effort.side, false);
     show->answers = bench_answers_create(show->rays->count);
     film(show);
-    snprintf(what, sizeof what, "%s, %u worker%s, while it is rebuilt", names[kind], workers, workers > 1 ? "s" : "");
+    snprintf(what, sizeof what, "%s, %u worker%s, while it is rebuilt", bench_kind_name(kind), workers,
+             workers > 1 ? "s" : "");
     report(show, what);
     own_destroy(show->own);
     bench_rays_destroy(show->rays);
