@@ -106,10 +106,12 @@ static real difference(const real a[3], const float b[3]) {
 }
 
 /*
- * Whether u and v name the point, measured where it counts: as a distance in the world. They are ratios of areas, so
- * slivers, whose areas are far smaller than the numbers that they come from, have less of their digits.
+ * Whether u and v name the point, measured where it counts: as a distance in the world. They are ratios of areas as
+ * the ray sees them, so slivers, and the more so if it grazes them, whose areas are far smaller than the numbers that
+ * they come from, have less of their digits: what is rounded is a part of R times an edge, what it is divided by the
+ * area times the cosine.
  */
-static bool right_weights(const object *o, const crossing *c, const rg_hit *got, real bound) {
+static bool right_weights(const object *o, const crossing *c, const rg_hit *got, real bound, real cosine) {
     const reference_shape *s = o->shape;
     if (s->kind != RG_SHAPE_MESH) return got->u == 0 && got->v == 0;
     if (!(got->u >= 0 && got->v >= 0 && (real)got->u + got->v <= 1 + 0x1p-22L)) return false;
@@ -128,7 +130,7 @@ static bool right_weights(const object *o, const crossing *c, const rg_hit *got,
     }
     real area[3], edges = length(ab) + length(ac);
     cross(ab, ac, area);
-    real digits = 0x1p-22L + 0x1p-48L * o->condition * o->world_radius * edges / length(area);
+    real digits = 0x1p-22L + 0x1p-48L * o->condition * o->world_radius * edges / (length(area) * fabsl(cosine));
     return length(apart) <= 2 * bound + digits * edges;
 }
 
@@ -218,7 +220,7 @@ static void try_match(void *context, const crossing *c) {
     if (m->place) m->found = true;
     if (m->place || c->primitive != m->got->primitive) return;
     if (difference(normal, m->got->normal) > normal_bound(j->o, j->ray, cosine)) return;
-    if (right_weights(j->o, c, m->got, bound)) m->found = true;
+    if (right_weights(j->o, c, m->got, bound, cosine)) m->found = true;
 }
 
 static bool found_by_a_ray(const judge *j, const rg_hit *got, bool place) {
@@ -249,7 +251,7 @@ static const char *impossible(const object *o, const rg_ray *ray, rg_cull cull, 
     /* Where the surface turns away, its two sides come nearer to each other than e. */
     if (fabsl(cosine) > 0x1p-30L + 8 * sqrtl(curvature(o) * e) && culled(cull, side_of(&at, &c))) return "culled";
     if (!(difference(normal, got->normal) <= normal_bound(o, ray, 0.5L))) return "normal";
-    return right_weights(o, &c, got, bound) ? NULL : "u or v";
+    return right_weights(o, &c, got, bound, cosine) ? NULL : "u or v";
 }
 
 /* The same of a place alone, on whichever primitive it is. */
@@ -321,8 +323,9 @@ static bool is_equal(const reference_scene *scene, const rg_ray *ray, const refe
     const object *o = find_object(scene, want->object);
     const crossing c = {.t = want->t, .primitive = want->primitive, .u = want->u, .v = want->v};
     return got->t >= ray->t_min && got->t <= ray->t_max && error->t <= error->t_bound &&
-           error->normal <= normal_bound(o, ray, want->cosine) && right_weights(o, &c, got, error->t_bound) &&
-           right_position(ray, got) && right_offset(o, ray, got);
+           error->normal <= normal_bound(o, ray, want->cosine) &&
+           right_weights(o, &c, got, error->t_bound, want->cosine) && right_position(ray, got) &&
+           right_offset(o, ray, got);
 }
 
 static reference_verdict verdict(reference_error *error, const char *what) {
