@@ -38,12 +38,11 @@ void rgi_any_grid_free(rgi_any_grid *grid, rg_scene *scene) {
 }
 
 bool rgi_any_grid_free_some(rgi_any_grid *grid, rg_scene *scene) {
-    enum { SLABS = 8 };
     rgi_cells *cells = &grid->cells.cells;
     rgi_chunks *const chunks[] = {&grid->lattice.arena.chunks, &cells->entries.chunks, &cells->tiles.chunks,
                                   &grid->cells.members.chunks, grid->places ? &grid->places->chunks : NULL};
     for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
-        if (chunks[i] && rgi_chunks_free_some(chunks[i], SLABS)) return true;
+        if (chunks[i] && rgi_chunks_free_some(chunks[i], 1)) return true;
     }
     rgi_any_grid_free(grid, scene);
     return false;

@@ -13,7 +13,7 @@ void rgi_chunks_init(rgi_chunks *chunks, rgi_memory *memory, uint32_t bytes) {
  * is empty; none as long as that is not a whole one. */
 static uint32_t slab_pages(const rgi_chunks *chunks, uint32_t first) {
     uint64_t filled = (uint64_t)first * chunks->bytes / RGI_HUGE_PAGE;
-    return filled < 128 ? (uint32_t)(filled / 8) : 16;
+    return filled < 32 ? (uint32_t)(filled / 8) : 4;
 }
 
 static size_t slab_bytes(const rgi_chunks *chunks, uint32_t first) {

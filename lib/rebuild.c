@@ -253,11 +253,13 @@ static rgi_any_grid *grid_to_rebuild(const rg_scene *scene) {
     return NULL;
 }
 
-/* Returns whether it was asked to let a change in. */
+/* Returns whether it was asked to let a change in. Giving memory back takes the system longer than a step does else.
+ */
 static bool make_steps(rgi_any_grid *grid, rg_scene *scene) {
-    for (int i = 0; i < QUANTUM && !waits_for_change(grid->rebuild); i++) {
-        if (i >= AT_LEAST && rgi_lock_is_wanted(&scene->lock)) return true;
-        step(grid->rebuild, grid, scene);
+    rgi_rebuild *r = grid->rebuild;
+    for (int i = 0; i < QUANTUM && !waits_for_change(r); i++) {
+        if ((i >= AT_LEAST || r->stage == RELEASING) && i > 0 && rgi_lock_is_wanted(&scene->lock)) return true;
+        step(r, grid, scene);
     }
     return false;
 }
