@@ -67,16 +67,23 @@ typedef struct stepper {
     const double *inverse;
     int32_t cell[3], step[3];
     double next[3]; /* t of the wall ahead on each axis */
+    bool fixed[3];  /* on this axis the ray stays within the pad of the boxes: there is no wall ahead */
     double start;
     double slack; /* rounding of start + t */
 } stepper;
 
 static double wall_ahead(const stepper *s, int a) {
+    if (s->fixed[a]) return INFINITY;
     return (s->size[a] * ((double)s->cell[a] + (s->step[a] > 0)) - s->origin[a]) * s->inverse[a];
 }
 
+/*
+ * From `start` to `to`, which are finite. A ray that hardly moves along an axis stays in one cell there: everything
+ * that it can meet is listed in it, the pad being wider than the way. Its walls must not count: where the ray runs
+ * along one, rounding may put it on either side, and it would leave the lattice at once, unseen.
+ */
 static void stepper_init(stepper *s, const rgi_walk *walk, const double corner[3], const double size[3],
-                         const int32_t first[3], const int32_t last[3], double start) {
+                         const int32_t first[3], const int32_t last[3], double pad, double start, double to) {
     rgi_rebase3(walk->origin, corner, start, walk->direction, s->origin);
     s->inverse = walk->inverse;
     s->start = start;
@@ -85,6 +92,7 @@ static void stepper_init(stepper *s, const rgi_walk *walk, const double corner[3
         s->size[a] = size[a];
         s->step[a] = s->inverse[a] < 0 ? -1 : 1;
         s->cell[a] = (int32_t)rgi_floor(rgi_max(first[a], rgi_min(s->origin[a] / size[a], last[a])));
+        s->fixed[a] = fabs(walk->direction[a]) * (to - start) <= 0.5 * pad;
         s->next[a] = wall_ahead(s, a);
     }
 }
@@ -151,7 +159,7 @@ static bool walk_tile(const rgi_cells *cells, uint32_t index, double from, doubl
     int32_t last[3];
     for (int a = 0; a < 3; a++) last[a] = (int32_t)level->count[a] - 1;
     stepper s;
-    stepper_init(&s, walk, corner, level->size, first, last, from);
+    stepper_init(&s, walk, corner, level->size, first, last, cells->pad, from, to);
     for (;;) {
         if (visit_levels(cells, entered, finest, index, &s, walk)) return true;
         int axis = next_axis(&s);
@@ -186,7 +194,7 @@ static uint32_t index_of(const rgi_cells *cells, const int32_t at[3]) {
 static bool step_through_tiles(const rgi_cells *cells, const int32_t first[3], const int32_t last[3], double from,
                                double to, rgi_walk *walk) {
     stepper s;
-    stepper_init(&s, walk, cells->base, cells->extent, first, last, from);
+    stepper_init(&s, walk, cells->base, cells->extent, first, last, cells->pad, from, to);
     for (;;) {
         uint32_t tile = index_of(cells, s.cell);
         if (tile != RGI_NONE && walk_tile(cells, tile, from, to, walk)) return true;
