@@ -97,6 +97,38 @@ enumeration! {
 }
 
 enumeration! {
+    /// A call that changes a scene, as recordings have them.
+    Call, "call", None, {
+        /// None that this version of the binding has a name for.
+        None = RG_CALL_NONE,
+        /// [`Scene::insert`](crate::Scene::insert).
+        Insert = RG_CALL_INSERT,
+        /// [`Scene::insert_many`](crate::Scene::insert_many), and by [`Insert`](crate::Insert).
+        InsertMany = RG_CALL_INSERT_MANY,
+        /// [`Scene::move_pose`](crate::Scene::move_pose).
+        Move = RG_CALL_MOVE,
+        /// [`Scene::move_to`](crate::Scene::move_to).
+        MoveTo = RG_CALL_MOVE_TO,
+        /// [`Scene::move_many`](crate::Scene::move_many).
+        MoveMany = RG_CALL_MOVE_MANY,
+        /// [`Scene::set_mask`](crate::Scene::set_mask).
+        SetMask = RG_CALL_SET_MASK,
+        /// [`Scene::remove`](crate::Scene::remove).
+        Remove = RG_CALL_REMOVE,
+        /// [`Scene::remove_many`](crate::Scene::remove_many).
+        RemoveMany = RG_CALL_REMOVE_MANY,
+        /// [`Scene::create_grid`](crate::Scene::create_grid).
+        GridCreate = RG_CALL_GRID_CREATE,
+        /// [`Scene::destroy_grid`](crate::Scene::destroy_grid).
+        GridDestroy = RG_CALL_GRID_DESTROY,
+        /// [`Scene::configure_grid`](crate::Scene::configure_grid).
+        GridConfigure = RG_CALL_GRID_CONFIGURE,
+        /// [`Scene::rebuild_grid`](crate::Scene::rebuild_grid).
+        GridRebuild = RG_CALL_GRID_REBUILD,
+    }
+}
+
+enumeration! {
     /// What kind of geometry a shape is.
     ShapeKind, "kind", Sphere, {
         /// A sphere.

@@ -14,7 +14,7 @@ use raygrid_sys as sys;
 
 use crate::error::check;
 use crate::scene::Keeper;
-use crate::{GridConfig, Result, Scene, sized};
+use crate::{Error, ErrorKind, GridConfig, Result, Scene, sized};
 
 /// Leaves a panic behind that was caught at the border to C, and gives what C is told instead. Words are dropped; what
 /// else a panic may carry is not: that might panic again.
@@ -23,6 +23,23 @@ pub(crate) fn forget_panic<T>(panic: Box<dyn Any + Send>, told: T) -> T {
         std::mem::forget(panic);
     }
     told
+}
+
+/// Calls a function of the host from the border to C: what it gives, or what its panic said.
+pub(crate) fn caught<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
+    catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let words = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no words").to_owned();
+        forget_panic(panic, words)
+    })
+}
+
+/// The result of a call in which a function of the host failed and said why, if it did; `what` it was, if the call knows
+/// of nothing.
+pub(crate) fn with_words<T>(result: Result<T>, what: &str, words: Option<String>) -> Result<T> {
+    let Some(words) = words else { return result };
+    let what = result.as_ref().err().map_or(what, Error::message);
+    Err(Error::new(ErrorKind::CallbackFailed, format!("{what}: {words}")))
 }
 
 /// A host's own job system, in place of a scene's workers.

@@ -11,10 +11,13 @@ mod id;
 mod pose;
 mod query;
 mod ray;
+mod replay;
 mod report;
 mod scene;
 mod scene_many;
 mod shape;
+mod sink;
+mod source;
 mod user_shape;
 pub mod views;
 
@@ -25,7 +28,7 @@ mod with_mint;
 #[cfg(feature = "rayon")]
 mod with_rayon;
 
-pub use enums::{Coherence, Cull, GridKind, Isa, ShapeKind};
+pub use enums::{Call, Coherence, Cull, GridKind, Isa, ShapeKind};
 pub use error::{Error, ErrorKind, Result};
 pub use frame::Frame;
 pub use grid::{GridConfig, GridReport};
@@ -35,10 +38,13 @@ pub use id::{GridId, ObjectId};
 pub use pose::Pose;
 pub use query::{Query, Traced};
 pub use ray::Ray;
+pub use replay::{Replay, Step};
 pub use report::{ObjectReport, SceneReport, ShapeReport, Without};
 pub use scene::Scene;
 pub use scene_many::Insert;
 pub use shape::{Shape, ShapeId, Shapes};
+pub use sink::Sink;
+pub use source::Source;
 pub use user_shape::{LocalHit, LocalRay, UserShape};
 
 /// No coordinate, length or position may be larger than this in magnitude.

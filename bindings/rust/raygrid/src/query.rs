@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 //! How to trace, if not as by default.
 
-use std::any::Any;
 use std::ffi::c_void;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 use std::sync::{Mutex, PoisonError};
 
 use raygrid_sys as sys;
 
 use crate::error::check;
-use crate::host::forget_panic;
+use crate::host::caught;
 use crate::views::{Flags, HitViews, RayViews, agree};
 use crate::{Coherence, Cull, Error, ErrorKind, Hit, Ray, Result, Scene, sized};
 
@@ -57,22 +55,15 @@ struct Filtering<'a> {
     panicked: Mutex<Option<String>>,
 }
 
-/// What a panic said, if it was words.
-fn words_of(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no words").to_owned()
-}
-
 unsafe extern "C" fn filter(user: *mut c_void, index: u64, candidate: *const sys::rg_hit) -> i32 {
     // SAFETY: `user` is the `Filtering` of the running trace, the candidate a hit; `Hit` is laid out as `rg_hit`.
     let (filtering, candidate) = unsafe { (&*user.cast::<Filtering<'_>>(), &*candidate.cast::<Hit>()) };
     // The library has no larger indices than there are rays in a slice.
-    match catch_unwind(AssertUnwindSafe(|| (filtering.filter)(index as usize, candidate))) {
+    match caught(|| (filtering.filter)(index as usize, candidate)) {
         Ok(counts) => i32::from(counts),
-        Err(panic) => {
-            let mut panicked = filtering.panicked.lock().unwrap_or_else(PoisonError::into_inner);
-            panicked.get_or_insert_with(|| words_of(&*panic));
-            forget_panic(panic, -1)
+        Err(words) => {
+            filtering.panicked.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(words);
+            -1
         }
     }
 }

@@ -3,12 +3,13 @@
 
 use std::fmt;
 use std::ptr::NonNull;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use raygrid_sys as sys;
 
 use crate::error::check;
 use crate::host::Log;
+use crate::sink::Recording;
 use crate::views::agree;
 use crate::{
     Builder, Error, ErrorKind, GridConfig, GridId, GridReport, Hit, ObjectId, ObjectReport, ParallelFor, Pose, Query,
@@ -53,6 +54,7 @@ pub(crate) type Keeper = Arc<Kept>;
 pub(crate) struct Kept {
     raw: NonNull<sys::rg_scene>,
     log: Option<Box<Log>>,
+    recording: Mutex<Option<Recording>>,
     _parallel_for: Option<Box<Box<dyn ParallelFor>>>,
     /// What it is a frame of, which must not end before it.
     _followed: Option<Keeper>,
@@ -80,11 +82,17 @@ impl Scene {
         host: Option<Box<Box<dyn ParallelFor>>>,
         followed: Option<Keeper>,
     ) -> Self {
-        Self { raw, keeper: Arc::new(Kept { raw, log, _parallel_for: host, _followed: followed }) }
+        let kept = Kept { raw, log, recording: Mutex::default(), _parallel_for: host, _followed: followed };
+        Self { raw, keeper: Arc::new(kept) }
     }
 
     pub(crate) fn keeper(&self) -> Keeper {
         Arc::clone(&self.keeper)
+    }
+
+    /// The recording that the library writes, if there is one.
+    pub(crate) fn place_for_recording(&self) -> &Mutex<Option<Recording>> {
+        &self.keeper.recording
     }
 
     #[inline]

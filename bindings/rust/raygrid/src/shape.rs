@@ -3,6 +3,7 @@
 
 use std::fmt;
 use std::marker::PhantomData;
+use std::mem::ManuallyDrop;
 use std::ptr::{self, NonNull};
 
 use raygrid_sys as sys;
@@ -120,6 +121,11 @@ impl Shape {
 
     pub(crate) fn raw(&self) -> *mut sys::rg_shape {
         self.0.as_ptr()
+    }
+
+    /// Gives the reference away.
+    pub(crate) fn into_raw(self) -> *mut sys::rg_shape {
+        ManuallyDrop::new(self).raw()
     }
 }
 
