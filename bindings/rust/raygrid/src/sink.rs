@@ -104,8 +104,7 @@ unsafe extern "C" fn number_shape(
     number: *mut u64,
 ) -> i32 {
     // SAFETY: see above; a Shape is a pointer and nothing else, and the reference to this one does not leave the call.
-    let (writing, shape) =
-        unsafe { (&*user.cast::<Mutex<Writing<'_>>>(), &*ptr::from_ref(&shape).cast::<Shape>()) };
+    let (writing, shape) = unsafe { (&*user.cast::<Mutex<Writing<'_>>>(), &*ptr::from_ref(&shape).cast::<Shape>()) };
     let mut writing = lock(writing);
     let Some(give) = &mut writing.sink.number else { return -1 };
     match caught(|| give(shape)) {

@@ -60,10 +60,7 @@ impl<'a> Source<'a> {
     /// Gives the user-defined shapes: called with the number that [`Sink::number_shapes`](crate::Sink::number_shapes)
     /// gave it, and the corners of the local box that it had and must have again. `None`: there is none, and the call
     /// fails.
-    pub fn find_shapes(
-        self,
-        find: impl FnMut(u64, [f64; 3], [f64; 3]) -> Option<Shape> + Send + 'a,
-    ) -> Self {
+    pub fn find_shapes(self, find: impl FnMut(u64, [f64; 3], [f64; 3]) -> Option<Shape> + Send + 'a) -> Self {
         Self { find: Some(Box::new(find)), ..self }
     }
 }
