@@ -72,7 +72,8 @@ installed() {
     ldd "$CARGO_TARGET_DIR/debug/examples/hello" | grep -F "$prefix/lib/libraygrid.so"
 }
 
-export CARGO_TARGET_DIR=$directory/target CARGO_TERM_COLOR=never
+# Lines are what a failure names; more for a debugger takes its time to make and to link.
+export CARGO_TARGET_DIR=$directory/target CARGO_TERM_COLOR=never CARGO_PROFILE_DEV_DEBUG=line-tables-only
 command -v cargo >/dev/null || PATH=$HOME/.cargo/bin:$PATH
 cd "$here"
 case $only in
