@@ -99,7 +99,8 @@ check "cargo test" cargo test --workspace --locked --no-fail-fast --features "$f
 check "docs without warnings" env RUSTDOCFLAGS=-Dwarnings \
     cargo doc --workspace --locked --no-deps --quiet --features "$features"
 check "packages that build" "${unoptimised[@]}" bash -c "$(declare -f packages); packages"
-check "an installed library" bash -c "$(declare -f installed); directory=$directory here=$here; set -e; installed"
+export directory here
+check "an installed library" bash -c "$(declare -f installed); set -e; installed"
 if [ ${#old[@]} -eq 0 ]; then
     say "left out: lints and builds with Rust $oldest, which is not here"
 else
