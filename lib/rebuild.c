@@ -141,7 +141,8 @@ static void store(rgi_rebuild *r, rg_scene *scene, uint32_t slot, const rgi_boun
 }
 
 static void fill(rgi_rebuild *r, rg_scene *scene) {
-    if (r->cursor == scene->objects.used) {
+    /* A call on many that found no memory has taken slots back: there may be fewer than there were. */
+    if (r->cursor >= scene->objects.used) {
         enter(r, FILLED);
         return;
     }

@@ -5,12 +5,11 @@
  * theirs, and boxes grow by atomic operations; the few that leave their cells follow one by one.
  */
 #include "any_grid.h"
+#include "error.h"
 #include "frame.h"
 #include "scene_objects.h"
 #include "vec.h"
 #include "views.h"
-
-#include "error.h"
 
 #include <string.h>
 
