@@ -88,12 +88,27 @@ static void take_away(int i) {
     w.ids[i] = RG_NO_OBJECT;
 }
 
+/* From nearby, in any direction: no other ball reaches where that ray begins or passes. */
+static void check_from_nearby(int i) {
+    double way[3], from[3];
+    for (int k = 0; k < 3; k++) way[k] = 0.01 + unit_random();
+    if (unit_random() < 0.5) way[0] = -way[0];
+    double length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    for (int k = 0; k < 3; k++) from[k] = w.at[i][k] - 1.9 / length * way[k];
+    const rg_ray ray = rg_ray_from(from, way);
+    rg_hit hit;
+    MUST(rg_scene_trace(w.scene, &ray, &hit, 1) == RG_OK);
+    MUST(hit.object == w.ids[i]);
+    MUST(fabs(hit.t * length - 0.9) <= 0x1p-30);
+}
+
 static void check(int i) {
     const rg_ray ray = rg_ray_from((double[]){-1e5, 3 * (i % 25), 3 * (i / 25)}, (double[]){1, 0, 0});
     rg_hit hit;
     MUST(rg_scene_trace(w.scene, &ray, &hit, 1) == RG_OK);
     MUST(hit.object == w.ids[i]);
     MUST(!w.ids[i] || fabs(hit.t - (w.at[i][0] - 1 + 1e5)) <= 0x1p-30);
+    if (w.ids[i]) check_from_nearby(i);
 }
 
 static void check_some(void) {
@@ -253,6 +268,60 @@ START_TEST(calls_on_many) {
 }
 END_TEST
 
+/* The one whose slot is lowest is taken away last, so that its slot is used again first. */
+static void take_half_away(void) {
+    rg_object gone[MANY / 2];
+    uint64_t count = 0;
+    for (int i = MANY - 1; i >= MANY / 2; i--) {
+        if (w.ids[i]) gone[count++] = w.ids[i];
+        w.ids[i] = RG_NO_OBJECT;
+    }
+    const rg_input objects = {gone, sizeof *gone, RG_U64};
+    ck_assert_int_eq(rg_scene_remove_many(w.scene, &objects, count), RG_OK);
+}
+
+static void move_first(void) {
+    for (int i = 0; i < MANY; i++) {
+        if (!w.ids[i]) continue;
+        ck_assert_int_eq(move(i, 1e4), RG_OK);
+        return;
+    }
+}
+
+/* Tries to insert many more, with memory for so few blocks that it ends on the way. */
+static void insert_in_vain(long blocks) {
+    enum { MORE = 3000 };
+    static rg_shape *shapes[MORE];
+    static double at[MORE][3];
+    rg_pose_views poses = {.size = sizeof poses, .position = rg_input3_packed(at[0], sizeof *at, RG_F64)};
+    const rg_insert_views views = {
+        .size = sizeof views, .shapes = shapes, .shapes_stride = sizeof *shapes, .poses = &poses};
+    for (int i = 0; i < MORE; i++) {
+        shapes[i] = w.ball;
+        for (int k = 0; k < 3; k++) at[i][k] = -1e5 * (1 + unit_random());
+    }
+    w.blocks_left = blocks;
+    ck_assert_int_eq(rg_scene_insert_many(w.scene, &views, MORE, NULL), RG_OUT_OF_MEMORY);
+    w.blocks_left = -1;
+}
+
+/* A call for which memory ends takes back slots that the rebuild has passed already: it ends nevertheless. */
+START_TEST(slots_taken_back) {
+    for (int passed = 0; passed < MANY / 4; passed++) {
+        begin(kinds[_i], 1);
+        fill(10);
+        for (int n = 0; !report().rebuilding; n++) ck_assert_int_eq(move(n % MANY, 1e4), RG_OK);
+        for (int n = 0; n < passed; n++) ck_assert_int_eq(move(n, 1e4), RG_OK);
+        take_half_away();
+        insert_in_vain(passed % 8);
+        for (int n = 0; n < MANY && report().rebuilding; n++) move_first();
+        ck_assert_uint_eq(report().rebuilding, 0);
+        check_all();
+        end();
+    }
+}
+END_TEST
+
 Suite *unit_suite(void) {
     Suite *suite = suite_create("rebuild");
     TCase *tests = tcase_create("rebuild");
@@ -263,6 +332,7 @@ Suite *unit_suite(void) {
     tcase_add_loop_test(tests, without_memory, 0, 3);
     tcase_add_loop_test(tests, dropped, 0, 3);
     tcase_add_loop_test(tests, calls_on_many, 0, 3);
+    tcase_add_loop_test(tests, slots_taken_back, 0, 3);
     suite_add_tcase(suite, tests);
     return suite;
 }
