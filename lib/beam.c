@@ -16,38 +16,46 @@ float rgi_beam_below(const rgi_beam_scale *scale, float pad, double t) {
     return (float)(at - 0x1p-19 * fabs(at) - 0x1p-50 * fabs(scale->shift) * scale->length) - 4 * pad;
 }
 
-static void start(rgi_beam *beam, const rgi_lattice *lattice) {
+/* The limits of t, and the first step of the walk. */
+static void start(rgi_beam *beam, rgi_ref root, double t_min, double t_max) {
+    beam->t_min = rgi_beam_below(&beam->scale, beam->pad, t_min);
+    beam->t_max = rgi_beam_above(&beam->scale, beam->pad, t_max);
+    rgi_beam_start(beam, root);
+}
+
+void rgi_beam_start(rgi_beam *beam, rgi_ref root) {
     beam->t_after = beam->t_min + 0x1p-17f * fabsf(beam->t_min) + 8 * beam->pad;
     beam->t_before = beam->t_max - 0x1p-17f * fabsf(beam->t_max) - 8 * beam->pad;
     beam->hit = false;
     beam->nodes = 0;
     beam->waiting = 0;
     beam->depth = 1;
-    beam->refs[0] = lattice->root;
+    beam->refs[0] = root;
     beam->ts[0] = beam->t_min;
 }
 
-bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
-                   double t_max) {
-    double from[3], origin[3], radius = middle->radius, length = sqrt(ray->dd);
-    rgi_sub(ray->origin, lattice->origin, origin);
+/* Brings a ray, `from` along which its origin is, into a frame. */
+static bool aim(rgi_beam *beam, const double frame_origin[3], double frame_scale, const rgi_middle *middle,
+                const double ray_origin[3], const double direction[3], double dd, double from_t) {
+    double from[3], origin[3], radius = middle->radius, length = sqrt(dd), shift = 0;
+    rgi_sub(ray_origin, frame_origin, origin);
     rgi_sub(origin, middle->centre, from);
     double distance2 = rgi_dot(from, from);
-    beam->scale.shift = 0;
-    beam->scale.length = length * lattice->scale;
+    beam->scale.length = length * frame_scale;
     if (distance2 > RGI_FAR * RGI_FAR * radius * radius) {
-        double b = rgi_dot(from, ray->direction) / ray->dd;
-        if (distance2 - b * b * ray->dd > 2 * radius * radius + 0x1p-40 * distance2) return false;
-        beam->scale.shift = -b - RGI_BEFORE * radius / length;
-        rgi_rebase3(ray->origin, lattice->origin, beam->scale.shift, ray->direction, origin);
+        double b = rgi_dot(from, direction) / dd;
+        if (distance2 - b * b * dd > 2 * radius * radius + 0x1p-40 * distance2) return false;
+        shift = -b - RGI_BEFORE * radius / length;
+        rgi_rebase3(ray_origin, frame_origin, shift, direction, origin);
     }
+    beam->scale.shift = from_t + shift;
     /* A bound of t within all that is stored. */
-    double longest = 2 * (middle->extent + lattice->scale * (fabs(origin[0]) + fabs(origin[1]) + fabs(origin[2])));
+    double longest = 2 * (middle->extent + frame_scale * (fabs(origin[0]) + fabs(origin[1]) + fabs(origin[2])));
     beam->negative = 0;
     beam->pad = 0;
     double per_length = 1 / length;
     for (int a = 0; a < 3; a++) {
-        double o = origin[a] * lattice->scale, d = ray->direction[a] * per_length;
+        double o = origin[a] * frame_scale, d = direction[a] * per_length;
         double pad = 0x1p-20 * fabs(o) + 0x1p-90 * fabs(beam->scale.shift) * beam->scale.length;
         bool down = d < 0;
         beam->origin[a] = (float)o;
@@ -62,9 +70,20 @@ bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle 
         beam->towards[a] = RGI_OCTANTS * (uint32_t)(down ? a + 3 : a);
         beam->away[a] = RGI_OCTANTS * (uint32_t)(down ? a : a + 3);
     }
-    beam->t_min = rgi_beam_below(&beam->scale, beam->pad, ray->t_min);
-    beam->t_max = rgi_beam_above(&beam->scale, beam->pad, t_max);
-    start(beam, lattice);
+    return true;
+}
+
+bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
+                   double t_max) {
+    if (!aim(beam, lattice->origin, lattice->scale, middle, ray->origin, ray->direction, ray->dd, 0)) return false;
+    start(beam, lattice->root, ray->t_min, t_max);
+    return true;
+}
+
+bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray, double dd) {
+    if (!aim(beam, mesh->origin, mesh->scale, &mesh->middle, ray->origin, ray->direction, dd, ray->shift))
+        return false;
+    start(beam, mesh->root, ray->t_min, ray->t_max);
     return true;
 }
 
@@ -86,5 +105,5 @@ void rgi_beam_of_packet(rgi_beam *beam, const rgi_packet *p, uint32_t ray, const
     beam->t_max = p->t_hi[ray];
     beam->scale.shift = p->shift[ray];
     beam->scale.length = p->length[ray];
-    start(beam, lattice);
+    rgi_beam_start(beam, lattice->root);
 }

@@ -14,6 +14,7 @@
 #include "object.h"
 
 typedef struct rgi_kernels rgi_kernels;
+struct rgi_mesh_ray;
 
 /** Entries of a beam's stack; what goes deeper is walked by recursion. */
 enum { RGI_STACK = 256 };
@@ -71,6 +72,12 @@ typedef struct rgi_beam {
 /** Fills all but ask, query and any; false if the ray passes all that is stored. */
 bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
                    double t_max);
+
+/** The same for the inside of a mesh; dd: the direction's square. */
+bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray, double dd);
+
+/** Begins the walk of a beam at a root. */
+void rgi_beam_start(rgi_beam *beam, rgi_ref root);
 
 /**
  * Up to RGI_PACKET rays that go the same way: all run along one axis in the same sense, and between four planes, two
@@ -141,6 +148,8 @@ struct rgi_kernels {
      *  has ended before, those still active are to go on as beams. */
     void (*trace_packet)(const rgi_lattice *lattice, rgi_packet *packet);
     void (*trace_packets)(const rgi_lattice *lattice, rgi_packet *one, rgi_packet *other);
+    /** Takes one ray through a mesh. */
+    void (*mesh_one)(struct rgi_mesh_ray *ray);
 };
 
 extern const rgi_kernels rgi_kernels_portable;

@@ -28,10 +28,9 @@ static const uint32_t orders[8][8] __attribute__((aligned(32))) = {
 
 /* --------------------------------------------------------------------------------- one ray, 8 or 16 bounds */
 
-/* Octants of a node that the ray may meet, as bits; *t: where. */
-RGI_INLINE uint32_t meet_octants(const rgi_node *n, const rgi_beam *b, f8 *t) {
+/* Of 8 boxes, those that the ray may meet, as bits; *t: where. */
+RGI_INLINE uint32_t meet_octants(const float *planes, const rgi_beam *b, f8 *t) {
     f8 first = f8_set(b->t_min), last = f8_set(b->t_max);
-    const float *planes = n->lo[0];
     for (int a = 0; a < 3; a++) {
         f8 inverse = f8_set(b->inverse[a]);
         first = f8_max(f8_fma(f8_load(planes + b->towards[a]), inverse, f8_set(b->near[a])), first);
@@ -152,7 +151,7 @@ static bool walk_node_below(const rgi_lattice *lattice, rgi_beam *b, const rgi_n
     float t[RGI_OCTANTS];
     f8 first;
     if (n->own && walk_below(lattice, b, n->own)) return true;
-    uint32_t met = meet_octants(n, b, &first);
+    uint32_t met = meet_octants(n->lo[0], b, &first);
     f8_store(t, first);
     for (uint32_t i = RGI_OCTANTS; i-- > 0;) {
         uint32_t octant = orders[b->negative][i];
@@ -191,7 +190,7 @@ RGI_INLINE bool visit_node(const rgi_lattice *lattice, rgi_beam *b, const rgi_no
     f8 t;
     /* Room for 8 children, 8 more that are written and not kept, and its own chain. */
     if (b->depth + 2 * RGI_OCTANTS + 1 > RGI_STACK) return walk_node_below(lattice, b, n);
-    uint32_t met = meet_octants(n, b, &t);
+    uint32_t met = meet_octants(n->lo[0], b, &t);
     b->depth += f8_keep(met, orders[b->negative], t, n->child, b->ts + b->depth, b->refs + b->depth);
     if (n->own) push(b, n->own, from);
     return false;
@@ -252,7 +251,7 @@ static void trace_one(const rgi_lattice *lattice, rgi_beam *b) {
                 ref = 0;
                 break;
             }
-            uint32_t met = meet_octants(n, b, &ts);
+            uint32_t met = meet_octants(n->lo[0], b, &ts);
             if (n->own || !met) {
                 b->depth += f8_keep(met, orders[b->negative], ts, n->child, b->ts + b->depth, b->refs + b->depth);
                 ref = n->own;
@@ -288,6 +287,12 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 
 #include "kernels_packet.h"
 
-const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,  prepare,
-                                                       to_frame,           bound,        meet,         trace_one,
-                                                       trace_some,         trace_packet, trace_packets};
+#if defined(RGI_NO_MESH)
+#define mesh_one NULL
+#else
+#include "kernels_mesh.h"
+#endif
+
+const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,   prepare,
+                                                       to_frame,           bound,        meet,          trace_one,
+                                                       trace_some,         trace_packet, trace_packets, mesh_one};

@@ -16,6 +16,7 @@
 #define RAYGRID_LIB_LATTICE_H
 
 #include "chunks.h"
+#include "middle.h"
 #include "slots.h"
 
 #include <stdbool.h>
@@ -202,13 +203,6 @@ bool rgi_lattice_has_cell(const rgi_lattice *lattice, const rgi_location *place,
 rg_result rgi_lattice_reserve(rgi_lattice *lattice, uint64_t unbounded);
 
 /** The middle of what has a cell. */
-typedef struct rgi_middle {
-    double centre[3]; /* relative to the frame's origin, in world units */
-    double radius;    /* in world units */
-    double extent;    /* the largest coordinates along the axes, added up, in units of the frame */
-    float spacing;    /* near 1 / cube root of the number of objects: how far apart they are, in parts of the whole */
-} rgi_middle;
-
 rgi_middle rgi_lattice_middle(const rgi_lattice *lattice);
 
 /** A world box around all that has a cell; lo > hi if there is nothing. */

@@ -1,43 +1,70 @@
 /* SPDX-License-Identifier: MIT */
-/* Triangle meshes: their data, and the tree of boxes that finds the triangles a ray may meet. */
+/*
+ * Triangle meshes. Inside a mesh is a tree of boxes with up to 8 children a node; its leaves hold up to 16 triangles
+ * over up to 16 vertices, each stored once a leaf. All of it is in floats, in a frame of the mesh, and only passes
+ * over triangles that can't be met: which is met where is decided in double, on the vertices as they were given.
+ *
+ * Where the caller's vertices are floats of common size they are the frame's to the last bit, and nothing else is
+ * kept of them. Else the frame holds (vertex - origin) * scale rounded to float, and the vertices are kept in double.
+ */
 #ifndef RAYGRID_LIB_MESH_H
 #define RAYGRID_LIB_MESH_H
 
 #include "intersect.h"
 #include "memory.h"
+#include "middle.h"
 
-/* A node of the tree. Children of an inner node lie side by side. */
+struct rgi_kernels;
+
+enum { RGI_CHILDREN = 8, RGI_LEAF = 16, RGI_MESH_LINE = 64 };
+
+/** A node or a leaf by the cache line where it begins; leaves have the highest bit set. */
+typedef uint32_t rgi_mesh_ref;
+#define RGI_MESH_LEAF 0x80000000u
+
+/** Children's boxes, with a pad around them; where there is none lo = +infinity, hi = -infinity. A child's number is,
+ * as far as that goes, its octant of the node: bit a is set for the upper side along axis a. */
 typedef struct rgi_mesh_node {
-    double lo[3], hi[3]; /* padded, see rgi_mesh_build */
-    uint32_t first;      /* leaf: its first triangle; inner: its first child */
-    uint32_t count;      /* leaf: its triangles; inner: 0 */
+    float lo[3][RGI_CHILDREN], hi[3][RGI_CHILDREN];
+    rgi_mesh_ref child[RGI_CHILDREN];
+    uint32_t spare[8];
 } rgi_mesh_node;
 
-/** Longest way from the root to a leaf. */
-enum { RGI_MESH_DEPTH = 80 };
+/** Lanes that are not used repeat the first vertex, so triangles of them have no area. */
+typedef struct rgi_mesh_leaf {
+    float at[3][RGI_LEAF];        /* vertices, in the frame */
+    uint8_t corner[3][RGI_LEAF];  /* of each triangle */
+    uint32_t primitive[RGI_LEAF]; /* the caller's number of each */
+    uint32_t number;              /* of this leaf among all */
+    float longest;                /* no triangle's corners are farther apart along an axis */
+    uint16_t triangles, vertices;
+    uint32_t spare;
+} rgi_mesh_leaf;
 
 typedef struct rgi_mesh {
     rgi_memory *memory;
-    double (*vertices)[3];
-    uint32_t vertex_count;
-    uint32_t triangle_count;
-    uint32_t (*triangles)[3]; /* vertex indices, in the order of the leaves */
-    uint32_t *primitives;     /* the caller's number of each */
-    rgi_mesh_node *nodes;
-    uint32_t node_count;
-    uint32_t node_room;
-    double lo[3], hi[3];
+    const struct rgi_kernels *kernels;
+    char *lines; /* all nodes and leaves */
+    uint32_t line_count;
+    uint32_t leaf_count;
+    rgi_mesh_ref root;
+    uint32_t triangle_count, vertex_count;
+    uint32_t (*vertex_of)[RGI_LEAF]; /* the caller's number of each vertex of each leaf */
+    double (*vertices)[3];           /* in double; NULL where the frame's are exact */
+    double lo[3], hi[3];             /* of the triangles: vertices that none uses do not count */
+    double origin[3], scale;         /* of the frame; a power of two */
+    float pad;                       /* around boxes, in the frame */
+    float rounding;                  /* what tests in double may be wrong by, in the frame */
+    rgi_middle middle;
 } rgi_mesh;
+
+static inline void *rgi_mesh_at(const rgi_mesh *mesh, rgi_mesh_ref ref) {
+    return mesh->lines + (size_t)(ref & ~RGI_MESH_LEAF) * RGI_MESH_LINE;
+}
 
 /** Copies the triangles of checked views and builds the tree. On failure all is given back. */
 rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, rgi_mesh **mesh);
 void rgi_mesh_destroy(rgi_mesh *mesh);
-
-/** Makes nodes, triangles and primitives for the vertices and triangles given in the caller's order. */
-rg_result rgi_mesh_build(rgi_mesh *mesh);
-
-/** Copies the mesh as it was given: all vertices, and the vertices of all triangles, in the caller's order. */
-void rgi_mesh_read(const rgi_mesh *mesh, double (*vertices)[3], uint32_t (*triangles)[3]);
 
 bool rgi_mesh_intersect(const rgi_mesh *mesh, const rgi_local_ray *ray, rgi_candidate *candidate);
 

@@ -1,194 +1,249 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The tree of a mesh: binary, split where the surface area heuristic over 16 bins is least. I. Wald, "On fast
- * Construction of SAH-based Bounding Volume Hierarchies" (RT 2007), section 3.
+ * The binary tree of a mesh, split where the surface area heuristic over bins is least: I. Wald, "On fast
+ * Construction of SAH-based Bounding Volume Hierarchies" (RT 2007), section 3. And what it costs to make wide nodes
+ * of it: M. Pinedo's optimal collapse as in H. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on
+ * GPUs Through Compressed Wide BVHs" (HPG 2017), section 3.2.
  */
-#include "mesh.h"
+#include "mesh_build.h"
+
 #include "vec.h"
 
 #include <string.h>
 
-enum { BINS = 16, LEAF = 4, SAH_DEPTH = RGI_MESH_DEPTH - 36 };
+enum {
+    BINS = 16,
+    ATOM = 3, /* so few items are not parted */
+    /* Below this depth items are parted by number: the tree is at most 32 levels deeper. */
+    MOST_DEPTH = 48
+};
 
-/* A triangle while the tree is built. */
-typedef struct item {
-    double lo[3], hi[3];
-    uint32_t primitive;
-} item;
+/* What a leaf costs against a node, tested for a ray (measured): all its triangles at once, then what may be hit. */
+#define LEAF_COST 1.2f
+#define TRIANGLE_COST 0.03f
 
-typedef struct bin {
-    double lo[3], hi[3];
-    uint32_t count;
-} bin;
+typedef struct bins {
+    rgi_wrap box[3][BINS];
+    uint32_t count[3][BINS];
+} bins;
 
 typedef struct split {
-    int axis;  /* -1: none found */
-    double at; /* between the centres */
-    double cost;
+    int axis; /* -1: none found */
+    int bin;  /* the first of the right side */
+    float cost;
 } split;
 
-/* A part of the items that is to become the subtree below `node`. */
+/* Items on the way to a subtree: its root, the box of twice their centres, and how deep it is. */
 typedef struct part {
-    uint32_t node, first, count, depth;
+    uint32_t first, count, depth;
+    rgi_wrap centres;
 } part;
 
-/* Twice the middle, so that nothing is rounded but the sum. */
-static double centre(const item *it, int axis) {
-    return it->lo[axis] + it->hi[axis];
+/* Twice the middle. */
+static inline float centre(const rgi_item *it, int axis) {
+    return it->least[axis] - it->least[axis + 4];
 }
 
-static double half_area(const double lo[3], const double hi[3]) {
-    double d[3];
-    rgi_sub(hi, lo, d);
-    return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
-}
-
-static int bin_of(double value, double lo, double scale) {
-    int b = (int)((value - lo) * scale);
-    return b < 0 ? 0 : b >= BINS ? BINS - 1 : b;
-}
-
-/* The cheapest of the 15 planes between the bins of one axis: cost = sum over both sides of area * count. */
-static void best_plane(const bin bins[BINS], int axis, double lo, double width, split *best) {
-    double right_cost[BINS], box_lo[3], box_hi[3];
-    uint32_t count = 0;
-    rgi_empty_box(box_lo, box_hi);
-    for (int b = BINS - 1; b > 0; b--) {
-        rgi_grow(box_lo, box_hi, bins[b].lo, bins[b].hi);
-        count += bins[b].count;
-        right_cost[b] = count ? half_area(box_lo, box_hi) * count : INFINITY;
+static inline void grow_centres(rgi_wrap *w, const rgi_item *it) {
+    for (int a = 0; a < 3; a++) {
+        float c = centre(it, a);
+        w->least[a] = c < w->least[a] ? c : w->least[a];
+        w->least[a + 4] = -c < w->least[a + 4] ? -c : w->least[a + 4];
     }
-    rgi_empty_box(box_lo, box_hi);
+}
+
+static inline int bin_of(float c, float lo, float scale) {
+    int b = (int)((c - lo) * scale);
+    return b >= BINS ? BINS - 1 : b;
+}
+
+/* So wide are the bins, 0 along an axis where all centres are the same. */
+static void bin_scales(const rgi_wrap *centres, float scales[3]) {
+    for (int a = 0; a < 3; a++) {
+        float width = -centres->least[a + 4] - centres->least[a], scale = (float)BINS * (1 - 0x1p-20f) / width;
+        scales[a] = width > 0 && scale < 0x1p100f ? scale : 0;
+    }
+}
+
+static void fill_bins(bins *b, const rgi_item *items, uint32_t count, const rgi_wrap *centres,
+                      const float scales[3]) {
+    for (int a = 0; a < 3; a++) {
+        for (int i = 0; i < BINS; i++) rgi_wrap_empty(&b->box[a][i]);
+    }
+    memset(b->count, 0, sizeof b->count);
+    for (uint32_t i = 0; i < count; i++) {
+        for (int a = 0; a < 3; a++) {
+            int n = bin_of(centre(&items[i], a), centres->least[a], scales[a]);
+            rgi_wrap_grow(&b->box[a][n], &items[i]);
+            b->count[a][n]++;
+        }
+    }
+}
+
+/* The cheapest plane between the bins of one axis: cost = sum over both sides of area * count. */
+static void best_plane(const rgi_wrap box[BINS], const uint32_t counts[BINS], int axis, split *best) {
+    float right_cost[BINS];
+    rgi_wrap w;
+    uint32_t count = 0;
+    rgi_wrap_empty(&w);
+    for (int b = BINS - 1; b > 0; b--) {
+        rgi_wrap_grow(&w, &box[b]);
+        count += counts[b];
+        right_cost[b] = count ? rgi_wrap_half_area(&w) * (float)count : (float)INFINITY;
+    }
+    rgi_wrap_empty(&w);
     count = 0;
     for (int b = 0; b < BINS - 1; b++) {
-        rgi_grow(box_lo, box_hi, bins[b].lo, bins[b].hi);
-        count += bins[b].count;
-        double cost = count ? half_area(box_lo, box_hi) * count + right_cost[b + 1] : INFINITY;
+        rgi_wrap_grow(&w, &box[b]);
+        count += counts[b];
+        float cost = count ? rgi_wrap_half_area(&w) * (float)count + right_cost[b + 1] : (float)INFINITY;
         if (cost < best->cost) {
             best->cost = cost;
             best->axis = axis;
-            best->at = lo + width * (b + 1) / BINS;
+            best->bin = b + 1;
         }
     }
 }
 
-static split find_split(const item *items, uint32_t count) {
-    double lo[3], hi[3];
-    rgi_empty_box(lo, hi);
-    for (uint32_t i = 0; i < count; i++) {
-        for (int a = 0; a < 3; a++) {
-            lo[a] = rgi_min(lo[a], centre(&items[i], a));
-            hi[a] = rgi_max(hi[a], centre(&items[i], a));
-        }
-    }
-    split best = {-1, 0, INFINITY};
+/* Not part of the recursion's frame. */
+static __attribute__((noinline)) split find_split(const rgi_item *items, uint32_t count, const rgi_wrap *centres,
+                                                  const float scales[3]) {
+    bins b;
+    split best = {-1, 0, (float)INFINITY};
+    fill_bins(&b, items, count, centres, scales);
     for (int a = 0; a < 3; a++) {
-        double width = hi[a] - lo[a];
-        double scale = BINS / width;
-        if (!(width > 0) || !isfinite(scale)) continue;
-        bin bins[BINS];
-        for (int b = 0; b < BINS; b++) {
-            rgi_empty_box(bins[b].lo, bins[b].hi);
-            bins[b].count = 0;
-        }
-        for (uint32_t i = 0; i < count; i++) {
-            bin *b = &bins[bin_of(centre(&items[i], a), lo[a], scale)];
-            rgi_grow(b->lo, b->hi, items[i].lo, items[i].hi);
-            b->count++;
-        }
-        best_plane(bins, a, lo[a], width, &best);
+        if (scales[a] > 0) best_plane(b.box[a], b.count[a], a, &best);
     }
     return best;
 }
 
-/* Brings the items left of the plane to the front; returns how many. */
-static uint32_t partition(item *items, uint32_t count, const split *s) {
-    uint32_t left = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        if (centre(&items[i], s->axis) >= s->at) continue;
-        item swap = items[i];
-        items[i] = items[left];
-        items[left++] = swap;
-    }
-    return left;
-}
-
-/*
- * Boxes are padded by 2^-40 of the largest coordinate. The tests of boxes and triangles are rounded: with the ray's
- * origin at most 2^7 radii away (lib/object.c) to 2^-45 of that size; so a ray that meets a triangle meets its boxes.
- */
-static void box_of_items(const item *items, uint32_t count, double pad, rgi_mesh_node *node) {
-    rgi_empty_box(node->lo, node->hi);
-    for (uint32_t i = 0; i < count; i++) rgi_grow(node->lo, node->hi, items[i].lo, items[i].hi);
-    for (int a = 0; a < 3; a++) {
-        node->lo[a] -= pad;
-        node->hi[a] += pad;
-    }
-}
-
-static void build_nodes(rgi_mesh *mesh, item *items, double pad) {
-    part stack[RGI_MESH_DEPTH + 2];
-    uint32_t top = 0;
-    stack[top++] = (part){0, 0, mesh->triangle_count, 0};
-    mesh->node_count = 1;
-    while (top) {
-        part p = stack[--top];
-        rgi_mesh_node *node = &mesh->nodes[p.node];
-        item *own = items + p.first;
-        box_of_items(own, p.count, pad, node);
-        if (p.count <= LEAF) {
-            node->first = p.first;
-            node->count = p.count;
+/* Brings the items of the left side to the front; returns how many. */
+static uint32_t part_items(rgi_item *items, uint32_t count, const rgi_wrap *centres, const float scales[3],
+                           const split *s, rgi_wrap *left, rgi_wrap *right) {
+    const float lo = centres->least[s->axis], scale = scales[s->axis];
+    uint32_t i = 0, j = count;
+    while (i < j) {
+        if (bin_of(centre(&items[i], s->axis), lo, scale) < s->bin) {
+            grow_centres(left, &items[i++]);
             continue;
         }
-        /* Halves by number where no plane parts them, or where the tree grows too deep: 2^36 of them would fit. */
-        split s = {-1, 0, 0};
-        if (p.depth < SAH_DEPTH) s = find_split(own, p.count);
-        uint32_t left = s.axis >= 0 ? partition(own, p.count, &s) : 0;
-        if (left == 0 || left == p.count) left = p.count / 2;
-        node->count = 0;
-        node->first = mesh->node_count;
-        stack[top++] = (part){node->first + 1, p.first + left, p.count - left, p.depth + 1};
-        stack[top++] = (part){node->first, p.first, left, p.depth + 1};
-        mesh->node_count += 2;
+        grow_centres(right, &items[i]);
+        rgi_item swap = items[i];
+        items[i] = items[--j];
+        items[j] = swap;
     }
+    return i;
 }
 
-static void fill_items(const rgi_mesh *mesh, item *items) {
-    for (uint32_t i = 0; i < mesh->triangle_count; i++) {
-        item *it = &items[i];
-        it->primitive = i;
-        rgi_empty_box(it->lo, it->hi);
+/* ------------------------------------------------------------------------------------------------- the costs */
+
+bool rgi_leaf_holds(const rgi_making *m, uint32_t first, uint32_t count) {
+    uint32_t seen[RGI_LEAF], vertices = 0;
+    if (count > RGI_LEAF) return false;
+    memset(seen, 0xFF, sizeof seen); /* no vertex has that number */
+    for (uint32_t i = first; i < first + count; i++) {
+        uint32_t triangle;
+        memcpy(&triangle, &m->items[i].least[3], sizeof triangle);
         for (int c = 0; c < 3; c++) {
-            const double *v = mesh->vertices[mesh->triangles[i][c]];
-            rgi_grow(it->lo, it->hi, v, v);
+            uint32_t v = m->triangles[triangle][c], known = 0;
+            for (int k = 0; k < RGI_LEAF; k++) known |= seen[k] == v;
+            if (known) continue;
+            if (vertices == RGI_LEAF) return false;
+            seen[vertices++] = v;
         }
+    }
+    return true;
+}
+
+/* The least cost of two subtrees in `places` places together. */
+static float share(const rgi_branch *left, const rgi_branch *right, int places, uint8_t *of_left) {
+    float least = (float)INFINITY;
+    for (int k = 1; k < places; k++) {
+        float cost = left->cost[k - 1] + right->cost[places - k - 1];
+        if (!(cost < least)) continue;
+        least = cost;
+        *of_left = (uint8_t)k;
+    }
+    return least;
+}
+
+static void find_costs(const rgi_making *m, rgi_branch *b) {
+    float area = rgi_wrap_half_area(&b->box), leaf = (float)INFINITY;
+    memset(b->places, 0, sizeof b->places);
+    b->opened = 0;
+    if (rgi_leaf_holds(m, b->first, b->count)) leaf = area * (LEAF_COST + TRIANGLE_COST * (float)b->count);
+    b->cost[0] = leaf;
+    if (b->left) {
+        const rgi_branch *left = b + 1, *right = b + 2 * b->left;
+        uint8_t opened = 0;
+        float node = area + share(left, right, RGI_CHILDREN, &opened);
+        /* Of areas that are all 0 or all too large the sums can't be compared: then any way will do. */
+        if (node < leaf || !(leaf < (float)INFINITY)) {
+            b->cost[0] = node;
+            b->opened = opened ? opened : RGI_CHILDREN / 2;
+        }
+    }
+    for (int i = 1; i < RGI_CHILDREN - 1; i++) {
+        b->cost[i] = b->cost[i - 1];
+        if (!b->left) continue;
+        uint8_t of_left = 0;
+        float cost = share(b + 1, b + 2 * b->left, i + 1, &of_left);
+        if (!(cost < b->cost[i])) continue;
+        b->cost[i] = cost;
+        b->places[i] = of_left;
     }
 }
 
-rg_result rgi_mesh_build(rgi_mesh *mesh) {
-    item *items = NULL;
-    uint32_t(*ordered)[3] = NULL;
-    uint64_t count = mesh->triangle_count;
-    mesh->node_room = (uint32_t)(2 * count - 1);
-    rg_result result = rgi_allocate(mesh->memory, count, sizeof *items, "building a mesh", &items);
-    if (!result) result = rgi_allocate(mesh->memory, count, sizeof *ordered, "a mesh's triangles", &ordered);
-    if (!result)
-        result = rgi_allocate(mesh->memory, mesh->node_room, sizeof *mesh->nodes, "a mesh's tree", &mesh->nodes);
-    if (!result)
-        result = rgi_allocate(mesh->memory, count, sizeof *mesh->primitives, "a mesh's triangles", &mesh->primitives);
-    if (result) {
-        rgi_release(mesh->memory, ordered, count, sizeof *ordered);
-    } else {
-        fill_items(mesh, items);
-        build_nodes(mesh, items, 0x1p-40 * rgi_max(rgi_max_magnitude(mesh->lo), rgi_max_magnitude(mesh->hi)));
-        for (uint32_t i = 0; i < count; i++) {
-            mesh->primitives[i] = items[i].primitive;
-            memcpy(ordered[i], mesh->triangles[items[i].primitive], sizeof ordered[i]);
-        }
-        rgi_release(mesh->memory, mesh->triangles, count, sizeof *mesh->triangles);
-        mesh->triangles = ordered;
+/* -------------------------------------------------------------------------------------------------- the tree */
+
+static void make_branch(const rgi_making *m, rgi_branch *branch, const part *p) {
+    rgi_item *items = m->items + p->first;
+    part left = {p->first, 0, p->depth + 1, {{0}}}, right = left;
+    branch->first = p->first;
+    branch->count = p->count;
+    branch->left = 0;
+    if (p->count <= ATOM) {
+        rgi_wrap_empty(&branch->box);
+        for (uint32_t i = 0; i < p->count; i++) rgi_wrap_grow(&branch->box, &items[i]);
+        find_costs(m, branch);
+        return;
     }
-    rgi_release(mesh->memory, items, count, sizeof *items);
-    return result;
+    float scales[3];
+    split s = {-1, 0, 0};
+    bin_scales(&p->centres, scales);
+    rgi_wrap_empty(&left.centres);
+    rgi_wrap_empty(&right.centres);
+    if (p->depth < MOST_DEPTH) s = find_split(items, p->count, &p->centres, scales);
+    if (s.axis >= 0) {
+        left.count = part_items(items, p->count, &p->centres, scales, &s, &left.centres, &right.centres);
+    } else {
+        left.count = p->count / 2;
+        for (uint32_t i = 0; i < p->count; i++)
+            grow_centres(i < left.count ? &left.centres : &right.centres, &items[i]);
+    }
+    right.first += left.count;
+    right.count = p->count - left.count;
+    branch->left = left.count;
+    make_branch(m, branch + 1, &left);
+    make_branch(m, branch + 2 * (size_t)left.count, &right);
+    branch->box = branch[1].box;
+    rgi_wrap_grow(&branch->box, &branch[2 * (size_t)left.count].box);
+    find_costs(m, branch);
+}
+
+void rgi_branches_make(rgi_making *m) {
+    part all = {0, m->mesh->triangle_count, 0, {{0}}};
+    rgi_wrap_empty(&all.centres);
+    for (uint32_t i = 0; i < m->mesh->triangle_count; i++) {
+        rgi_item *it = &m->items[i];
+        rgi_wrap_empty(it);
+        for (int c = 0; c < 3; c++) {
+            const float *v = m->at[m->triangles[i][c]];
+            const rgi_wrap corner = {{v[0], v[1], v[2], 0, -v[0], -v[1], -v[2], 0}};
+            rgi_wrap_grow(it, &corner);
+        }
+        memcpy(&it->least[3], &i, sizeof i);
+        grow_centres(&all.centres, it);
+    }
+    make_branch(m, m->branches, &all);
 }

@@ -340,4 +340,25 @@ RGI_INLINE uint32_t f8_keep(uint32_t bits, const uint32_t order[8], f8 t, const 
 #endif
 }
 
+/** The lanes of `table` that 16 numbers below 16 name. */
+RGI_INLINE f16 f16_take(f16 table, const uint8_t numbers[16]) {
+#if RGI_ISA == RGI_ISA_AVX512
+    return _mm512_permutexvar_ps(_mm512_cvtepu8_epi32(_mm_load_si128((const __m128i *)numbers)), table);
+#elif RGI_ISA == RGI_ISA_AVX2
+    f16 taken;
+    for (int i = 0; i < 2; i++) {
+        __m256i by = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(numbers + 8 * i)));
+        __m256 low = _mm256_permutevar8x32_ps(table.v[0], by), high = _mm256_permutevar8x32_ps(table.v[1], by);
+        /* Bit 3, moved to the sign, chooses the half. */
+        taken.v[i] = _mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32(by, 28)));
+    }
+    return taken;
+#else
+    float from[16], to[16];
+    f16_store(from, table);
+    for (int i = 0; i < 16; i++) to[i] = from[numbers[i]];
+    return f16_load(to);
+#endif
+}
+
 #endif

@@ -63,31 +63,50 @@ static rgi_local_ray ray_from(const double origin[3], const double target[3]) {
     return ray;
 }
 
-START_TEST(every_triangle_is_in_one_leaf_and_its_boxes) {
-    rgi_mesh *mesh = globe();
-    uint32_t seen = 0, leaves = 0;
-    unsigned char *once = calloc(1, TRIANGLES);
-    for (uint32_t i = 0; i < mesh->node_count; i++) {
-        const rgi_mesh_node *node = &mesh->nodes[i];
-        leaves += node->count > 0;
-        if (!node->count) {
-            for (uint32_t c = node->first; c < node->first + 2; c++) {
-                for (int a = 0; a < 3; a++)
-                    ck_assert(mesh->nodes[c].lo[a] >= node->lo[a] && mesh->nodes[c].hi[a] <= node->hi[a]);
+/* Every triangle is in one leaf; each leaf has the caller's numbers and coordinates; each box holds all below it. */
+static void look_below(const rgi_mesh *mesh, rgi_mesh_ref ref, const float lo[3], const float hi[3],
+                       unsigned char *once, uint32_t *leaves) {
+    if (!(ref & RGI_MESH_LEAF)) {
+        const rgi_mesh_node *node = rgi_mesh_at(mesh, ref);
+        for (int o = 0; o < RGI_CHILDREN; o++) {
+            float child_lo[3], child_hi[3];
+            for (int a = 0; a < 3; a++) {
+                child_lo[a] = node->lo[a][o];
+                child_hi[a] = node->hi[a][o];
             }
+            if (child_lo[0] > child_hi[0]) continue;
+            for (int a = 0; a < 3; a++) ck_assert(child_lo[a] >= lo[a] && child_hi[a] <= hi[a]);
+            look_below(mesh, node->child[o], child_lo, child_hi, once, leaves);
         }
-        for (uint32_t t = node->first; t < node->first + node->count; t++) {
-            seen++;
-            ck_assert_int_eq(once[mesh->primitives[t]]++, 0);
-            for (int c = 0; c < 3; c++) {
-                ck_assert_uint_eq(mesh->triangles[t][c], triangles[mesh->primitives[t]][c]);
-                const double *v = mesh->vertices[mesh->triangles[t][c]];
-                for (int a = 0; a < 3; a++) ck_assert(v[a] > node->lo[a] && v[a] < node->hi[a]);
+        return;
+    }
+    const rgi_mesh_leaf *leaf = rgi_mesh_at(mesh, ref);
+    ck_assert_uint_lt(leaf->number, mesh->leaf_count);
+    ++*leaves;
+    ck_assert(leaf->triangles >= 1 && leaf->triangles <= RGI_LEAF && leaf->vertices <= RGI_LEAF);
+    for (uint32_t t = 0; t < leaf->triangles; t++) {
+        ck_assert_int_eq(once[leaf->primitive[t]]++, 0);
+        for (int c = 0; c < 3; c++) {
+            uint32_t lane = leaf->corner[c][t], vertex = mesh->vertex_of[leaf->number][lane];
+            ck_assert_uint_lt(lane, leaf->vertices);
+            ck_assert_uint_eq(vertex, triangles[leaf->primitive[t]][c]);
+            for (int a = 0; a < 3; a++) {
+                float v = (float)((vertices[vertex][a] - mesh->origin[a]) * mesh->scale);
+                ck_assert(leaf->at[a][lane] == v && v > lo[a] && v < hi[a]);
+                ck_assert(mesh->vertices[vertex][a] == vertices[vertex][a]);
             }
         }
     }
-    ck_assert_uint_eq(seen, TRIANGLES);
-    ck_assert_uint_eq(mesh->node_count, 2 * leaves - 1);
+}
+
+START_TEST(every_triangle_is_in_one_leaf_and_its_boxes) {
+    const float lo[3] = {-INFINITY, -INFINITY, -INFINITY}, hi[3] = {INFINITY, INFINITY, INFINITY};
+    rgi_mesh *mesh = globe();
+    uint32_t leaves = 0;
+    unsigned char *once = calloc(1, TRIANGLES);
+    look_below(mesh, mesh->root, lo, hi, once, &leaves);
+    for (uint32_t i = 0; i < TRIANGLES; i++) ck_assert_uint_eq(once[i], 1);
+    ck_assert_uint_eq(leaves, mesh->leaf_count);
     free(once);
     rgi_mesh_destroy(mesh);
     ck_assert_uint_eq(memory.bytes, 0);

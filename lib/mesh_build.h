@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+/* How the tree of a mesh is made: first a binary one, then wide nodes and leaves out of it. */
+#ifndef RAYGRID_LIB_MESH_BUILD_H
+#define RAYGRID_LIB_MESH_BUILD_H
+
+#include "mesh.h"
+
+#include <math.h>
+
+/** Eight floats: lo[3], a number, -hi[3], another. So one minimum each grows a box. */
+typedef struct rgi_wrap {
+    float least[8];
+} rgi_wrap;
+
+/** A triangle while the tree is built: its box, and in least[3], as bits, its number. */
+typedef rgi_wrap rgi_item;
+
+/**
+ * A binary node over `count` items from `first` on. A subtree over n items has room for 2 n - 1 nodes from its root
+ * on: the left child follows at once, the right one where the left one's room ends.
+ *
+ * cost[i - 1]: what it costs at the least to hang the subtree in i places of a wide node or fewer, relative to one
+ * wide node tested for each ray (the surface area heuristic); places[i - 1]: how many of them the left child then
+ * gets, 0: as with one place fewer. With one place it becomes a wide node, whose 8 are shared as `opened` says, or if
+ * that is 0 a leaf.
+ */
+typedef struct rgi_branch {
+    rgi_wrap box;
+    uint32_t first, count;
+    uint32_t left; /* items of the left child; 0: has no children */
+    float cost[RGI_CHILDREN - 1];
+    uint8_t places[RGI_CHILDREN - 1];
+    uint8_t opened;
+} rgi_branch;
+
+/** What a tree is made from, and on the way. */
+typedef struct rgi_making {
+    rgi_mesh *mesh;
+    uint32_t (*triangles)[3]; /* vertices by the caller's numbers */
+    float (*at)[3];           /* vertices in the frame */
+    rgi_item *items;
+    rgi_branch *branches; /* 2 a triangle */
+} rgi_making;
+
+/** Sets up items and branches and their costs. */
+void rgi_branches_make(rgi_making *making);
+
+/** Makes lines, leaves and root out of the branches. */
+rg_result rgi_lines_make(const rgi_making *making);
+
+/** Whether the triangles of some items have no more vertices than a leaf holds. */
+bool rgi_leaf_holds(const rgi_making *making, uint32_t first, uint32_t count);
+
+static inline void rgi_wrap_empty(rgi_wrap *w) {
+    for (int i = 0; i < 8; i++) w->least[i] = (float)INFINITY;
+}
+
+static inline void rgi_wrap_grow(rgi_wrap *w, const rgi_wrap *other) {
+    for (int i = 0; i < 8; i++) w->least[i] = other->least[i] < w->least[i] ? other->least[i] : w->least[i];
+}
+
+static inline float rgi_wrap_half_area(const rgi_wrap *w) {
+    float x = -w->least[4] - w->least[0], y = -w->least[5] - w->least[1], z = -w->least[6] - w->least[2];
+    return x * y + y * z + z * x;
+}
+
+#endif
