@@ -60,7 +60,7 @@ bench_scene *convert(const demo::Model &model) {
     const uint32_t count = static_cast<uint32_t>(std::min<size_t>(model.parts().size(), BENCH_SHAPES));
     bench_scene *scene = allocate<bench_scene>(1);
     scene->name = "gltf";
-    scene->count = count;
+    scene->count = scene->size = count;
     scene->random = count;
     scene->shape_count = static_cast<int>(count);
     scene->shapes = allocate<bench_shape>(count);

@@ -79,6 +79,44 @@ struct bench_mesh *bench_icosphere(int levels) {
     return mesh;
 }
 
+/* Three waves a direction, the shorter the smaller. */
+static float bump(const float *v) {
+    float sum = 0;
+    for (int octave = 0; octave < 4; octave++) {
+        float f = 7.0f * (float)(1 << octave);
+        sum += (sinf(f * v[0] + 1) * sinf(f * v[1] + 2) + sinf(f * v[1]) * sinf(f * v[2] + 3)) / f;
+    }
+    return sum;
+}
+
+struct bench_mesh *bench_noisy_sphere(uint32_t triangles) {
+    int levels = (int)lround(log2(triangles / 20.0) / 2);
+    struct bench_mesh *mesh = bench_icosphere(levels);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        float *v = &mesh->vertices[3 * (size_t)i], radius = 0.4f * (1 + 0.5f * bump(v));
+        for (int k = 0; k < 3; k++) v[k] = 0.5f + radius * v[k];
+    }
+    return mesh;
+}
+
+struct bench_mesh *bench_soup(uint32_t triangles) {
+    struct bench_mesh *mesh = bench_allocate(1, sizeof *mesh);
+    double side = 1.2 / cbrt(triangles);
+    uint64_t random = 5;
+    mesh->triangle_count = triangles;
+    mesh->vertex_count = 3 * triangles;
+    mesh->vertices = bench_allocate(9 * (size_t)triangles + 1, sizeof *mesh->vertices);
+    mesh->corners = bench_allocate(3 * (size_t)triangles, sizeof *mesh->corners);
+    for (uint32_t i = 0; i < 3 * triangles; i++) mesh->corners[i] = i;
+    for (uint32_t i = 0; i < triangles; i++) {
+        double centre[3];
+        for (int k = 0; k < 3; k++) centre[k] = bench_random(&random);
+        for (int c = 0; c < 9; c++)
+            mesh->vertices[9 * (size_t)i + c] = (float)(centre[c % 3] + side * (bench_random(&random) - 0.5));
+    }
+    return mesh;
+}
+
 void bench_mesh_destroy(struct bench_mesh *mesh) {
     if (!mesh) return;
     free(mesh->vertices);

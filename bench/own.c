@@ -187,5 +187,5 @@ double own_bytes_per_object(const struct own *own) {
         own_check(rg_shape_stats(own->shapes[s], &shape));
         report.bytes += shape.bytes;
     }
-    return (double)report.bytes / (double)own->bodies->count;
+    return (double)report.bytes / (double)own->bodies->size;
 }

@@ -16,10 +16,11 @@ const char *const PEER_BUILD_NAMES[PEER_BUILDS] = {
 static const struct {
     uint32_t floats; /* a member */
     uint32_t each;   /* primitives a member */
-} LAYOUT[PEER_PARTS] = {{4, 1}, {24, 6}, {8, 1}, {12, 1}};
+} LAYOUT[PEER_PARTS] = {{4, 1}, {24, 6}, {8, 1}, {12, 1}, {0, UINT32_MAX}};
 
-static int part_of(const struct bench_shape *shape) {
-    switch (shape->kind) {
+/* The part of a body. A mesh that is all there is needs no instance. */
+static int part_of(const struct bench_scene *bodies, uint32_t body) {
+    switch (bench_shape_of(bodies, body)->kind) {
     case RG_SHAPE_SPHERE:
         return PEER_SPHERES;
     case RG_SHAPE_BOX:
@@ -27,7 +28,7 @@ static int part_of(const struct bench_shape *shape) {
     case RG_SHAPE_CAPSULE:
         return PEER_CAPSULES;
     default:
-        return PEER_INSTANCES;
+        return bench_is_one_mesh(bodies) ? PEER_MESH : PEER_INSTANCES;
     }
 }
 
@@ -92,7 +93,7 @@ static void place_instance(const struct bench_scene *bodies, uint32_t body, cons
 
 static void place(struct peer *peer, uint32_t body, const double position[3]) {
     const struct bench_scene *bodies = peer->bodies;
-    int p = part_of(bench_shape_of(bodies, body));
+    int p = part_of(bodies, body);
     float *to = peer->parts[p].coordinates + (size_t)LAYOUT[p].floats * peer->member[body];
     const double origin[3] = {0, 0, 0};
     switch (p) {
@@ -106,8 +107,11 @@ static void place(struct peer *peer, uint32_t body, const double position[3]) {
     case PEER_CAPSULES:
         place_capsule(bodies, body, position, to);
         break;
-    default:
+    case PEER_INSTANCES:
         place_instance(bodies, body, position, to);
+        break;
+    default:
+        break;
     }
 }
 
@@ -117,7 +121,7 @@ static void sort_bodies(struct peer *peer) {
     const struct bench_scene *bodies = peer->bodies;
     peer->member = bench_allocate(bodies->count, sizeof *peer->member);
     for (uint32_t i = 0; i < bodies->count; i++) {
-        peer->member[i] = peer->parts[part_of(bench_shape_of(bodies, i))].count++;
+        peer->member[i] = peer->parts[part_of(bodies, i)].count++;
     }
     for (int p = 0; p < PEER_PARTS; p++) {
         struct peer_part *part = &peer->parts[p];
@@ -129,7 +133,7 @@ static void sort_bodies(struct peer *peer) {
         if (part->count) peer->input += (long long)(floats * sizeof(float));
     }
     for (uint32_t i = 0; i < bodies->count; i++) {
-        peer->parts[part_of(bench_shape_of(bodies, i))].bodies[peer->member[i]] = i;
+        peer->parts[part_of(bodies, i)].bodies[peer->member[i]] = i;
         place(peer, i, bodies->positions[i]);
     }
 }
@@ -199,15 +203,27 @@ static void make_capsules(struct peer *peer, struct peer_part *part) {
     peer->input += (long long)(part->count * sizeof(uint32_t));
 }
 
-/* The scene of a mesh stands still: it is built as well as the peer can. */
-static void make_mesh(struct peer *peer, int shape, bool robust) {
-    const struct embree_api *api = peer->api;
-    const struct bench_mesh *mesh = peer->bodies->shapes[shape].mesh;
-    RTCGeometry geometry = api->rtcNewGeometry(peer->api->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+static RTCGeometry geometry_of_mesh(const struct embree_api *api, const struct bench_mesh *mesh) {
+    RTCGeometry geometry = api->rtcNewGeometry(api->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     api->rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh->vertices, 0,
                                     3 * sizeof(float), mesh->vertex_count);
     api->rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->corners, 0,
                                     3 * sizeof(uint32_t), mesh->triangle_count);
+    return geometry;
+}
+
+/* The mesh of a scene that is nothing else. */
+static void make_one_mesh(struct peer *peer, struct peer_part *part) {
+    const struct bench_mesh *mesh = peer->bodies->shapes[0].mesh;
+    part->geometry[0] = geometry_of_mesh(peer->api, mesh);
+    part->id = attach(peer, peer->scene, part->geometry[0]);
+    peer->input += (long long)(3 * sizeof(float) * mesh->vertex_count + 3 * sizeof(uint32_t) * mesh->triangle_count);
+}
+
+/* The scene of a mesh stands still: it is built as well as the peer can. */
+static void make_mesh(struct peer *peer, int shape, bool robust) {
+    const struct embree_api *api = peer->api;
+    RTCGeometry geometry = geometry_of_mesh(api, peer->bodies->shapes[shape].mesh);
     api->rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
     api->rtcCommitGeometry(geometry);
     peer->meshes[shape] = api->rtcNewScene(peer->api->device);
@@ -267,6 +283,7 @@ static bool has_meshes(const struct bench_scene *bodies) {
 bool peer_can(const struct peer_choice *choice, const struct bench_scene *bodies, enum peer_build build) {
     bool spheres = bench_all_spheres(bodies);
     if (defines_spheres(build)) return spheres;
+    if (bench_is_one_mesh(bodies)) return build != PEER_ARRAY;
     if (build == PEER_REFIT) return !spheres && !has_meshes(bodies);
     return build != PEER_ARRAY || (choice->api->version >= 40400 && only_mesh(bodies) >= 0);
 }
@@ -288,6 +305,7 @@ struct peer *peer_create(const struct peer_choice *choice, const struct bench_sc
     if (peer->parts[PEER_SPHERES].count) make_spheres(peer, &peer->parts[PEER_SPHERES]);
     if (peer->parts[PEER_BOXES].count) make_boxes(peer, &peer->parts[PEER_BOXES]);
     if (peer->parts[PEER_CAPSULES].count) make_capsules(peer, &peer->parts[PEER_CAPSULES]);
+    if (peer->parts[PEER_MESH].count) make_one_mesh(peer, &peer->parts[PEER_MESH]);
     if (peer->parts[PEER_INSTANCES].count) {
         for (int s = 0; s < bodies->shape_count; s++) {
             if (bodies->shapes[s].kind == RG_SHAPE_MESH) make_mesh(peer, s, choice->robust);
@@ -336,7 +354,7 @@ static void commit(struct peer *peer) {
 static void move_instances(struct peer *peer, const uint32_t *which, uint32_t from, uint32_t to) {
     if (!peer->parts[PEER_INSTANCES].count || in_array(peer)) return;
     for (uint32_t i = from; i < to; i++) {
-        if (part_of(bench_shape_of(peer->bodies, which[i])) != PEER_INSTANCES) continue;
+        if (part_of(peer->bodies, which[i]) != PEER_INSTANCES) continue;
         uint32_t member = peer->member[which[i]];
         set_transform(peer, member);
         peer->api->rtcCommitGeometry(peer->parts[PEER_INSTANCES].geometry[member]);
@@ -367,5 +385,5 @@ enum peer_build peer_build_of(const struct peer *peer) {
 }
 
 double peer_bytes_per_object(const struct peer *peer) {
-    return (double)(peer->bytes + peer->input) / (double)peer->bodies->count;
+    return (double)(peer->bytes + peer->input) / (double)peer->bodies->size;
 }

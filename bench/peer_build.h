@@ -5,7 +5,7 @@
 
 #include "peer.h"
 
-enum { PEER_SPHERES, PEER_BOXES, PEER_CAPSULES, PEER_INSTANCES, PEER_PARTS };
+enum { PEER_SPHERES, PEER_BOXES, PEER_CAPSULES, PEER_INSTANCES, PEER_MESH, PEER_PARTS };
 
 /** All bodies of one kind. */
 struct peer_part {

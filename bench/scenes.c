@@ -14,7 +14,7 @@ static const double FILLED = 0.05; /* part of the volume, overlaps counted twice
 
 enum { CLUSTERS = 64, BIG_ONES = 10, MESH_LEVELS = 4, FORMS = 16 };
 
-const char *const BENCH_SCENES[] = {"uniform", "mixed", "stadium", "boxes", "capsules", "mixture", "meshes", NULL};
+const char *const BENCH_SCENES[] = {"uniform", "mixed", "stadium", "boxes", "capsules", "mixture", "meshes", "noisy", "soup", NULL};
 
 static double rounded(double x) {
     return (double)(float)x;
@@ -199,16 +199,31 @@ void bench_settle(struct bench_scene *scene) {
     memcpy(scene->homes, scene->positions, scene->count * sizeof *scene->homes);
 }
 
+/* One mesh that fills the cube. */
+static void make_one_mesh(struct bench_scene *scene) {
+    bool soup = strcmp(scene->name, "soup") == 0;
+    struct bench_mesh *mesh = soup ? bench_soup(scene->size) : bench_noisy_sphere(scene->size);
+    add_shape(scene, (struct bench_shape){RG_SHAPE_MESH, {0}, mesh, sqrt(3.0), 1});
+}
+
+static bool names_one_mesh(const char *name) {
+    return strcmp(name, "noisy") == 0 || strcmp(name, "soup") == 0;
+}
+
 struct bench_scene *bench_scene_create(const char *name, uint32_t count) {
     struct bench_scene *scene = bench_allocate(1, sizeof *scene);
     scene->name = name;
+    scene->size = count;
+    if (names_one_mesh(name)) count = 1;
     scene->count = count;
     scene->random = count;
     scene->shapes = bench_allocate(FORMS, sizeof *scene->shapes);
     scene->positions = bench_allocate(count, sizeof *scene->positions);
     scene->scales = bench_allocate(count, sizeof *scene->scales);
     for (uint32_t i = 0; i < count; i++) scene->scales[i] = 1;
-    if (strcmp(name, "mixed") == 0) {
+    if (names_one_mesh(name)) {
+        make_one_mesh(scene);
+    } else if (strcmp(name, "mixed") == 0) {
         make_mixed(scene);
     } else if (strcmp(name, "stadium") == 0) {
         make_stadium(scene);
@@ -237,6 +252,10 @@ rg_pose bench_pose(const struct bench_scene *scene, uint32_t which) {
     if (scene->linears) memcpy(pose.linear, scene->linears[which], sizeof pose.linear);
     pose.scale = scene->scales[which];
     return pose;
+}
+
+bool bench_is_one_mesh(const struct bench_scene *scene) {
+    return scene->size != scene->count;
 }
 
 bool bench_all_spheres(const struct bench_scene *scene) {

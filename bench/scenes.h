@@ -33,6 +33,7 @@ enum { BENCH_SHAPES = 256 }; /* of a scene, at most */
 struct bench_scene {
     const char *name;
     uint32_t count;
+    uint32_t size; /* as lines name it: objects, or of a scene of one mesh triangles */
     struct bench_shape *shapes;
     int shape_count;
     uint8_t *shape_of;           /* of each object; NULL: all have the first */
@@ -66,6 +67,9 @@ static inline double bench_reach(const struct bench_scene *scene, uint32_t which
 }
 
 rg_pose bench_pose(const struct bench_scene *scene, uint32_t which);
+
+/** Whether it is one mesh and nothing else. */
+bool bench_is_one_mesh(const struct bench_scene *scene);
 
 /** Whether every object is a sphere. */
 bool bench_all_spheres(const struct bench_scene *scene);

@@ -90,7 +90,7 @@ static void measure_mode(struct bench_run *run, struct contest *contest, const s
     const struct bench_rays *rays = contest->rays;
     char what[64];
     snprintf(what, sizeof what, "%s/%s", rays->name, mode->name);
-    struct bench_line line = bench_line("traces", bodies->name, bodies->count, what);
+    struct bench_line line = bench_line("traces", bodies->name, bodies->size, what);
     contest->a_call = mode->a_call;
     char way[64];
     choose_peer(contest, mode->a_call == 1);
