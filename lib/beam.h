@@ -33,6 +33,9 @@ enum { RGI_STACK = 256 };
 /** Beyond it all bounds of t are the same; products and sums of them stay finite. */
 #define RGI_T_MOST 0x1p90
 
+/** What came of trying to enter a mesh. */
+typedef enum rgi_entered { RGI_NO_MESH_THERE, RGI_PASSED_BY, RGI_ENTERED } rgi_entered;
+
 /** Where the frame's t is zero, and how it grows with the ray's. */
 typedef struct rgi_beam_scale {
     double shift;  /* the t of the ray where the beam's is 0 */
@@ -55,6 +58,12 @@ typedef struct rgi_beam {
     /** Intersects the object with the ray in double; may lower t_max. Returns true to end. */
     bool (*ask)(struct rgi_beam *beam, uint32_t slot);
     void *query;
+    /** For rays side by side: where the walk inside a mesh has room. NULL: meshes are asked as other objects. `enter`
+     * begins it if the object is a mesh; `leave` ends it, and returns true to end. */
+    struct rgi_mesh_ray *room;
+    rgi_entered (*enter)(struct rgi_beam *beam, uint32_t slot);
+    bool (*leave)(struct rgi_beam *beam);
+    bool inside;             /* it is in a mesh */
     bool any;                /* any hit will do, and what is certain need not be asked */
     bool hit;                /* out: it has one that was not asked */
     float t_after, t_before; /* what is met between these is surely in range */

@@ -126,7 +126,39 @@ static void unite_block(const rgi_block *block, float lo[3], float hi[3]) {
 
 /* ------------------------------------------------------------------------------------------- rays on their own */
 
-/* Asks the objects that wait, the nearest first. Returns true if the walk is to end. */
+/* Bit i of the result is bit i ^ flip of `bits`: octants in the order in which a ray comes to them. */
+RGI_INLINE uint32_t flip_order(uint32_t bits, uint32_t flip) {
+    if (flip & 1) bits = (bits & 0x55) << 1 | (bits >> 1 & 0x55);
+    if (flip & 2) bits = (bits & 0x33) << 2 | (bits >> 2 & 0x33);
+    if (flip & 4) bits = (bits & 0x0F) << 4 | bits >> 4;
+    return bits;
+}
+
+#if !defined(RGI_NO_MESH)
+#include "kernels_mesh.h"
+#endif
+
+/* Asks about one object. Returns true if the walk is to end; it may be inside of a mesh then. */
+RGI_INLINE bool ask_one(rgi_beam *b, uint32_t slot) {
+    if (!b->room) return b->ask(b, slot);
+    rgi_entered entered = b->enter(b, slot);
+    if (entered == RGI_NO_MESH_THERE) return b->ask(b, slot);
+    b->inside = entered == RGI_ENTERED;
+    return b->inside;
+}
+
+/* Goes on inside a mesh. Returns true if the walk is to end. */
+RGI_INLINE bool step_inside(rgi_beam *b) {
+#if !defined(RGI_NO_MESH)
+    if (mesh_step(b->room)) return false;
+    b->inside = false;
+    return b->leave(b);
+#else
+    return false;
+#endif
+}
+
+/* Asks the objects that wait, the nearest first. Returns true if the walk is to end, or is inside of a mesh. */
 RGI_INLINE bool ask_waiting(const rgi_lattice *lattice, rgi_beam *b) {
     const uint32_t *slots = rgi_block_at(lattice, b->block)->slots;
     uint32_t waiting = b->waiting;
@@ -138,8 +170,11 @@ RGI_INLINE bool ask_waiting(const rgi_lattice *lattice, rgi_beam *b) {
             if (b->t[i] < b->t[next]) next = i;
         }
         if (b->t[next] > b->t_max) return false;
-        if (b->ask(b, slots[next])) return true;
         waiting &= ~(1u << next);
+        if (ask_one(b, slots[next])) {
+            b->waiting = waiting;
+            return true;
+        }
     }
     return false;
 }
@@ -170,7 +205,13 @@ static bool walk_below(const rgi_lattice *lattice, rgi_beam *b, rgi_ref ref) {
         b->nodes++;
         b->block = ref;
         b->waiting = meet_block(rgi_block_at(lattice, ref), b);
-        if (b->hit || ask_waiting(lattice, b)) return true;
+        if (b->hit) return true;
+        while (ask_waiting(lattice, b)) {
+            if (!b->inside) return true;
+            while (b->inside) {
+                if (step_inside(b)) return true;
+            }
+        }
     }
     return false;
 }
@@ -198,7 +239,8 @@ RGI_INLINE bool visit_node(const rgi_lattice *lattice, rgi_beam *b, const rgi_no
 
 /* One step on the way of a ray: asks what waits, or looks into the next node or block. Returns false at the end. */
 RGI_INLINE bool step(const rgi_lattice *lattice, rgi_beam *b, bool ahead) {
-    if (b->waiting && ask_waiting(lattice, b)) return false;
+    if (b->inside) return !step_inside(b);
+    if (b->waiting && ask_waiting(lattice, b)) return b->inside;
     rgi_ref ref;
     float t;
     do {
@@ -220,14 +262,6 @@ RGI_INLINE bool step(const rgi_lattice *lattice, rgi_beam *b, bool ahead) {
     }
     if (ahead && b->depth) fetch_ahead(lattice, b->refs[b->depth - 1]);
     return true;
-}
-
-/* Bit i of the result is bit i ^ flip of `bits`: octants in the order in which a ray comes to them. */
-RGI_INLINE uint32_t flip_order(uint32_t bits, uint32_t flip) {
-    if (flip & 1) bits = (bits & 0x55) << 1 | (bits >> 1 & 0x55);
-    if (flip & 2) bits = (bits & 0x33) << 2 | (bits >> 2 & 0x33);
-    if (flip & 4) bits = (bits & 0x0F) << 4 | bits >> 4;
-    return bits;
 }
 
 /*
@@ -289,8 +323,6 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 
 #if defined(RGI_NO_MESH)
 #define mesh_one NULL
-#else
-#include "kernels_mesh.h"
 #endif
 
 const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,   prepare,

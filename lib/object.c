@@ -66,8 +66,7 @@ static bool passes(double oo, double b, double reach, const rgi_ray *ray) {
     return oo * ray->dd - b * b > (reach * reach * (1 + 0x1p-8) + oo * 0x1p-40) * ray->dd;
 }
 
-bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray,
-                          rgi_local_ray *local, rgi_candidate *candidate) {
+bool rgi_object_local(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, rgi_local_ray *local) {
     double oc[3];
     rgi_sub(ray->origin, object->position, oc);
     double oo = rgi_dot(oc, oc), b = rgi_dot(oc, ray->direction);
@@ -84,6 +83,12 @@ bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, co
         rgi_copy(oc, local->origin);
         rgi_copy(ray->direction, local->direction);
     }
+    return true;
+}
+
+bool rgi_object_intersect(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray,
+                          rgi_local_ray *local, rgi_candidate *candidate) {
+    if (!rgi_object_local(object, linear, ray, local)) return false;
     if (object->shape->kind == RG_SHAPE_SPHERE && !linear)
         return rgi_sphere_intersect(object->reach, local, candidate);
     return rgi_shape_intersect(object->shape, local, candidate);

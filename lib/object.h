@@ -58,6 +58,10 @@ static inline double rgi_world_t(const rgi_ray *ray, double t) {
     return t * ray->to_world * ray->to_world2;
 }
 
+/** Brings a ray into the local frame of an object: sets origin, direction and shift. False if it passes the object
+ * by. */
+bool rgi_object_local(const rgi_object *object, const rgi_linear *linear, const rgi_ray *ray, rgi_local_ray *local);
+
 /**
  * Where the ray meets the object. The caller has filled t_min, t_max, sides, any, accept and context of `local`; the
  * rest is set here. `linear`: the object's linear part or NULL. The answer depends on the ray and the object alone.

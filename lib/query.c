@@ -78,27 +78,50 @@ static bool filter(void *context, const rgi_candidate *candidate) {
     return answer > 0;
 }
 
-bool rgi_query_visit(void *context, uint32_t slot) {
-    rgi_query *q = context;
-    const rg_scene *scene = q->call->scene;
-    const rgi_object *object = rgi_scene_object(scene, slot);
-    rgi_candidate candidate;
+/* Returns false if the ray does not see the object. */
+static bool begin_test(rgi_query *q, uint32_t slot, const rgi_object *object) {
     if (!(object->mask & q->ray.mask)) return false;
     q->tests++;
     q->testing = object;
     q->testing_id = rgi_object_id(object, slot);
     q->local.t_max = q->walk.t_max;
-    bool hit = rgi_object_intersect(object, rgi_scene_linear(scene, object), &q->ray, &q->local, &candidate);
+    return true;
+}
+
+/* Takes what the test gave. Returns true if nothing more is wanted. */
+static bool end_test(rgi_query *q, bool hit, const rgi_candidate *candidate) {
     q->failed |= q->local.failed;
     if (q->failed) return true;
     if (!hit) return false;
-    if (q->found && candidate.t == q->best.t && q->testing_id >= q->id) return false;
+    if (q->found && candidate->t == q->best.t && q->testing_id >= q->id) return false;
     q->found = true;
     q->id = q->testing_id;
-    q->object = object;
-    q->best = candidate;
-    q->walk.t_max = candidate.t;
+    q->object = q->testing;
+    q->best = *candidate;
+    q->walk.t_max = candidate->t;
     return q->call->any;
+}
+
+bool rgi_query_visit(void *context, uint32_t slot) {
+    rgi_query *q = context;
+    const rg_scene *scene = q->call->scene;
+    const rgi_object *object = rgi_scene_object(scene, slot);
+    rgi_candidate candidate;
+    if (!begin_test(q, slot, object)) return false;
+    bool hit = rgi_object_intersect(object, rgi_scene_linear(scene, object), &q->ray, &q->local, &candidate);
+    return end_test(q, hit, &candidate);
+}
+
+bool rgi_query_enter(rgi_query *q, uint32_t slot, rgi_mesh_ray *inside) {
+    const rg_scene *scene = q->call->scene;
+    const rgi_object *object = rgi_scene_object(scene, slot);
+    return begin_test(q, slot, object) &&
+           rgi_object_local(object, rgi_scene_linear(scene, object), &q->ray, &q->local) &&
+           rgi_mesh_begin(inside, object->shape->of.mesh, &q->local);
+}
+
+bool rgi_query_leave(rgi_query *q, const rgi_mesh_ray *inside) {
+    return end_test(q, inside->triangles.found, &inside->triangles.best);
 }
 
 void rgi_query_init(rgi_query *q, const rgi_call *c) {

@@ -4,6 +4,7 @@
 #define RAYGRID_LIB_QUERY_H
 
 #include "any_grid.h"
+#include "mesh_ray.h"
 
 #include <raygrid/trace.h>
 
@@ -58,6 +59,11 @@ void rgi_query_begin(rgi_query *query, uint64_t index);
  * nothing more is wanted. `context` is the query.
  */
 bool rgi_query_visit(void *context, uint32_t slot);
+
+/** The same for an object that is a mesh, in two steps: false if the ray passes it by, else the ray is to be taken
+ * through it and to leave, which returns true if nothing more is wanted. */
+bool rgi_query_enter(rgi_query *query, uint32_t slot, rgi_mesh_ray *inside);
+bool rgi_query_leave(rgi_query *query, const rgi_mesh_ray *inside);
 
 /** Writes what is wanted of the ray. */
 void rgi_query_write(const rgi_query *query);

@@ -52,9 +52,36 @@ static void visit_unbounded(rgi_query *q, const rgi_lattice *lattice) {
         q->done = rgi_query_visit(q, lattice->unbounded[i]);
 }
 
+static rgi_entered enter(rgi_beam *beam, uint32_t slot) {
+    rgi_query *q = beam->query;
+    if (rgi_scene_object(q->call->scene, slot)->shape->kind != RG_SHAPE_MESH) return RGI_NO_MESH_THERE;
+    return rgi_query_enter(q, slot, beam->room) ? RGI_ENTERED : RGI_PASSED_BY;
+}
+
+static bool leave(rgi_beam *beam) {
+    rgi_query *q = beam->query;
+    q->done = rgi_query_leave(q, beam->room);
+    beam->t_max = rgi_beam_above(&beam->scale, beam->pad, q->walk.t_max);
+    return q->done;
+}
+
+/* Rays side by side, in meshes, too: those take much of the stack. */
+static __attribute__((noinline)) void trace_some_into_meshes(const rgi_call *c, const rgi_lattice *lattice,
+                                                             rgi_beam *beams, uint32_t count) {
+    rgi_mesh_ray rooms[RGI_PACKET];
+    for (uint32_t i = 0; i < count; i++) {
+        beams[i].room = &rooms[i];
+        beams[i].enter = enter;
+        beams[i].leave = leave;
+    }
+    c->scene->kernels->trace_some(lattice, beams, count);
+}
+
 static void trace_beams(const rgi_call *c, const rgi_lattice *lattice, rgi_beam *beams, uint32_t count) {
     if (count == 1)
         c->scene->kernels->trace_one(lattice, &beams[0]);
+    else if (count && lattice->boxes)
+        trace_some_into_meshes(c, lattice, beams, count);
     else if (count)
         c->scene->kernels->trace_some(lattice, beams, count);
     for (uint32_t i = 0; i < count; i++) {
