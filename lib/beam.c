@@ -4,6 +4,8 @@
 #include "exact.h"
 #include "vec.h"
 
+#include <string.h>
+
 float rgi_beam_above(const rgi_beam_scale *scale, float pad, double t) {
     double at = (t - scale->shift) * scale->length;
     at = rgi_min(rgi_max(at, -RGI_T_MOST), RGI_T_MOST);
@@ -36,28 +38,27 @@ void rgi_beam_start(rgi_beam *beam, rgi_ref root) {
     beam->ts[0] = beam->t_min;
 }
 
-/* Brings a ray, `from` along which its origin is, into a frame. */
-static bool aim(rgi_beam *beam, const double frame_origin[3], double frame_scale, const rgi_middle *middle,
-                const double ray_origin[3], const double direction[3], double dd, double from_t) {
-    double from[3], origin[3], radius = middle->radius, length = sqrt(dd), shift = 0;
-    rgi_sub(ray_origin, frame_origin, origin);
+bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
+                   double t_max) {
+    double from[3], origin[3], radius = middle->radius, length = sqrt(ray->dd);
+    rgi_sub(ray->origin, lattice->origin, origin);
     rgi_sub(origin, middle->centre, from);
     double distance2 = rgi_dot(from, from);
-    beam->scale.length = length * frame_scale;
+    beam->scale.shift = 0;
+    beam->scale.length = length * lattice->scale;
     if (distance2 > RGI_FAR * RGI_FAR * radius * radius) {
-        double b = rgi_dot(from, direction) / dd;
-        if (distance2 - b * b * dd > 2 * radius * radius + 0x1p-40 * distance2) return false;
-        shift = -b - RGI_BEFORE * radius / length;
-        rgi_rebase3(ray_origin, frame_origin, shift, direction, origin);
+        double b = rgi_dot(from, ray->direction) / ray->dd;
+        if (distance2 - b * b * ray->dd > 2 * radius * radius + 0x1p-40 * distance2) return false;
+        beam->scale.shift = -b - RGI_BEFORE * radius / length;
+        rgi_rebase3(ray->origin, lattice->origin, beam->scale.shift, ray->direction, origin);
     }
-    beam->scale.shift = from_t + shift;
     /* A bound of t within all that is stored. */
-    double longest = 2 * (middle->extent + frame_scale * (fabs(origin[0]) + fabs(origin[1]) + fabs(origin[2])));
+    double longest = 2 * (middle->extent + lattice->scale * (fabs(origin[0]) + fabs(origin[1]) + fabs(origin[2])));
     beam->negative = 0;
     beam->pad = 0;
     double per_length = 1 / length;
     for (int a = 0; a < 3; a++) {
-        double o = origin[a] * frame_scale, d = direction[a] * per_length;
+        double o = origin[a] * lattice->scale, d = ray->direction[a] * per_length;
         double pad = 0x1p-20 * fabs(o) + 0x1p-90 * fabs(beam->scale.shift) * beam->scale.length;
         bool down = d < 0;
         beam->origin[a] = (float)o;
@@ -72,19 +73,66 @@ static bool aim(rgi_beam *beam, const double frame_origin[3], double frame_scale
         beam->towards[a] = RGI_OCTANTS * (uint32_t)(down ? a + 3 : a);
         beam->away[a] = RGI_OCTANTS * (uint32_t)(down ? a : a + 3);
     }
-    return true;
-}
-
-bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
-                   double t_max) {
-    if (!aim(beam, lattice->origin, lattice->scale, middle, ray->origin, ray->direction, ray->dd, 0)) return false;
     start(beam, lattice->root, ray->t_min, t_max);
     return true;
 }
 
-bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray, double dd) {
-    if (!aim(beam, mesh->origin, mesh->scale, &mesh->middle, ray->origin, ray->direction, dd, ray->shift))
-        return false;
+/* 2^-e for the e for which 2^e <= x < 2^(e + 1); x is no denormal number. */
+static double inverse_power_of_two(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = (0x7FEull - (bits >> 52)) << 52;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/*
+ * The same way for all axes, without branches: which way a ray runs is not to be foreseen. The unit of t is such that
+ * the largest component of the direction is in [1, 2): what errors are in units of length are not more in those of t.
+ */
+static void set_slabs(rgi_beam *beam, const double origin[3], const double direction[3], double lost,
+                      double longest) {
+    for (uint32_t a = 0; a < 3; a++) {
+        double o = origin[a], d = direction[a], pad = 0x1p-20 * fabs(o) + lost;
+        bool down = d < 0;
+        float size = (float)rgi_max(fabs(d), RGI_FLAT), inverse = (down ? -1.0f : 1.0f) / size;
+        double middle = -o * (double)inverse, widening = pad * fabs((double)inverse);
+        widening += fabs(d) < RGI_FLAT ? longest : 0;
+        beam->origin[a] = (float)o;
+        beam->direction[a] = (float)d;
+        beam->inverse[a] = inverse;
+        beam->near[a] = (float)(middle - widening);
+        beam->far[a] = (float)(middle + widening);
+        beam->pad += (float)(2 * pad);
+        beam->negative |= (uint32_t)down << a;
+        beam->towards[a] = RGI_OCTANTS * (a + 3 * down);
+        beam->away[a] = RGI_OCTANTS * (a + 3 * !down);
+    }
+}
+
+bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray) {
+    double origin[3], direction[3], from[3], shift = 0, radius = mesh->middle.radius;
+    double unit = inverse_power_of_two(rgi_max_magnitude(ray->direction));
+    for (int a = 0; a < 3; a++) {
+        origin[a] = ray->origin[a] - mesh->origin[a];
+        from[a] = origin[a] - mesh->middle.centre[a];
+        direction[a] = ray->direction[a] * unit;
+    }
+    double distance2 = rgi_dot(from, from);
+    if (distance2 > RGI_FAR * RGI_FAR * radius * radius) {
+        double dd = rgi_dot(direction, direction), b = rgi_dot(from, direction) / dd;
+        if (distance2 - b * b * dd > 2 * radius * radius + 0x1p-40 * distance2) return false;
+        shift = -b - RGI_BEFORE * radius;
+        rgi_rebase3(ray->origin, mesh->origin, shift, direction, origin);
+    }
+    beam->scale.shift = ray->shift + shift * unit;
+    beam->scale.length = mesh->scale / unit;
+    for (int a = 0; a < 3; a++) origin[a] *= mesh->scale;
+    beam->negative = 0;
+    beam->pad = 0;
+    /* A bound of t within all that is stored. */
+    double longest = 2 * (mesh->middle.extent + fabs(origin[0]) + fabs(origin[1]) + fabs(origin[2]));
+    set_slabs(beam, origin, direction, 0x1p-90 * fabs(beam->scale.shift) * beam->scale.length, longest);
     start(beam, mesh->root, ray->t_min, ray->t_max);
     return true;
 }

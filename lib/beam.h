@@ -82,8 +82,8 @@ typedef struct rgi_beam {
 bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle *middle, const rgi_ray *ray,
                    double t_max);
 
-/** The same for the inside of a mesh; dd: the direction's square. */
-bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray, double dd);
+/** The same for the inside of a mesh. The largest component of the direction is no denormal number. */
+bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray);
 
 /** Begins the walk of a beam at a root. */
 void rgi_beam_start(rgi_beam *beam, rgi_ref root);

@@ -19,7 +19,7 @@ static void make_filter(rgi_mesh_ray *m) {
     f->origin_x = o[t->x];
     f->origin_y = o[t->y];
     f->origin_z = o[t->z];
-    float inverse = 1 / d[t->z];
+    float inverse = m->beam.inverse[t->z];
     f->shear_x = d[t->x] * inverse;
     f->shear_y = d[t->y] * inverse;
     f->error =
@@ -29,7 +29,7 @@ static void make_filter(rgi_mesh_ray *m) {
 bool rgi_mesh_begin(rgi_mesh_ray *m, const rgi_mesh *mesh, const rgi_local_ray *ray) {
     rgi_triangle_ray_init(&m->triangles, ray);
     m->mesh = mesh;
-    if (!rgi_beam_into_mesh(&m->beam, mesh, ray, rgi_dot(ray->direction, ray->direction))) return false;
+    if (!rgi_beam_into_mesh(&m->beam, mesh, ray)) return false;
     make_filter(m);
     return true;
 }

@@ -9,10 +9,11 @@
 void rgi_triangle_ray_init(rgi_triangle_ray *t, const rgi_local_ray *ray) {
     const double *d = ray->direction;
     t->ray = ray;
-    t->z = fabs(d[0]) > fabs(d[1]) ? 0 : 1;
-    if (fabs(d[2]) > fabs(d[t->z])) t->z = 2;
-    t->x = t->z == 2 ? 0 : t->z + 1;
-    t->y = t->z == 0 ? 2 : t->z - 1;
+    /* No branches: which axis it is can't be foreseen. */
+    int y_over_x = !(fabs(d[0]) > fabs(d[1])), z_over = fabs(d[2]) > rgi_max(fabs(d[0]), fabs(d[1]));
+    t->z = z_over ? 2 : y_over_x;
+    t->x = (0x021 >> 4 * t->z) & 3; /* after 0 comes 1, after 1 2, after 2 0 */
+    t->y = (0x102 >> 4 * t->z) & 3;
     t->shear[0] = d[t->x] / d[t->z];
     t->shear[1] = d[t->y] / d[t->z];
     t->found = false;
