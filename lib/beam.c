@@ -77,19 +77,7 @@ bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle 
     return true;
 }
 
-/* 2^-e for the e for which 2^e <= x < 2^(e + 1); x is no denormal number. */
-static double inverse_power_of_two(double x) {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    bits = (0x7FEull - (bits >> 52)) << 52;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-/*
- * The same way for all axes, without branches: which way a ray runs is not to be foreseen. The unit of t is such that
- * the largest component of the direction is in [1, 2): what errors are in units of length are not more in those of t.
- */
+/* The same way for all axes, without branches: which way a ray runs is not to be foreseen. */
 static void set_slabs(rgi_beam *beam, const double origin[3], const double direction[3], double lost,
                       double longest) {
     for (uint32_t a = 0; a < 3; a++) {
@@ -112,7 +100,7 @@ static void set_slabs(rgi_beam *beam, const double origin[3], const double direc
 
 bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray) {
     double origin[3], direction[3], from[3], shift = 0, radius = mesh->middle.radius;
-    double unit = inverse_power_of_two(rgi_max_magnitude(ray->direction));
+    double unit = rgi_mesh_unit(rgi_max_magnitude(ray->direction));
     for (int a = 0; a < 3; a++) {
         origin[a] = ray->origin[a] - mesh->origin[a];
         from[a] = origin[a] - mesh->middle.centre[a];

@@ -13,8 +13,12 @@
 #include "lattice.h"
 #include "object.h"
 
+#include <string.h>
+
 typedef struct rgi_kernels rgi_kernels;
 struct rgi_mesh_ray;
+struct rgi_mesh_packet;
+struct rgi_object;
 
 /** Entries of a beam's stack; what goes deeper is walked by recursion. */
 enum { RGI_STACK = 256 };
@@ -85,6 +89,20 @@ bool rgi_beam_init(rgi_beam *beam, const rgi_lattice *lattice, const rgi_middle 
 /** The same for the inside of a mesh. The largest component of the direction is no denormal number. */
 bool rgi_beam_into_mesh(rgi_beam *beam, const rgi_mesh *mesh, const rgi_local_ray *ray);
 
+/**
+ * What a local direction is multiplied by inside of a mesh: the power of two that brings its largest component, which
+ * is no denormal number, into [0.5, 1). So a t is not less than the way along any axis, and what errors are in units
+ * of length are at most twice as much in those of t.
+ */
+static inline double rgi_mesh_unit(double largest) {
+    uint64_t bits;
+    double unit;
+    memcpy(&bits, &largest, sizeof bits);
+    bits = (0x7FDull - (bits >> 52)) << 52;
+    memcpy(&unit, &bits, sizeof unit);
+    return unit;
+}
+
 /** Begins the walk of a beam at a root. */
 void rgi_beam_start(rgi_beam *beam, rgi_ref root);
 
@@ -111,6 +129,8 @@ typedef struct rgi_packet {
     double shift[RGI_PACKET], length[RGI_PACKET]; /* see rgi_beam_scale */
     /** As rgi_beam; gives the bounds of the nearest hit so far, in the frame. Returns true to end the ray. */
     bool (*ask)(struct rgi_packet *packet, uint32_t ray, uint32_t slot);
+    /** Asks about an object that is a mesh for some rays, named by bits; false: it is none, nothing was asked. */
+    bool (*ask_mesh)(struct rgi_packet *packet, uint32_t rays, uint32_t slot);
     void *context;
     const rgi_bundle *bundle;
     uint32_t visits;   /* nodes and blocks looked into */
@@ -159,6 +179,11 @@ struct rgi_kernels {
     void (*trace_packets)(const rgi_lattice *lattice, rgi_packet *one, rgi_packet *other);
     /** Takes one ray through a mesh. */
     void (*mesh_one)(struct rgi_mesh_ray *ray);
+    /** Brings the rays of a bundle into the local frame of an object that is a mesh, and into that of the mesh. */
+    void (*mesh_enter)(const rgi_bundle *bundle, const struct rgi_object *object, const rgi_linear *linear,
+                       struct rgi_mesh_packet *packet);
+    /** Takes them through, if they go the same way; else false: nothing was done. */
+    bool (*mesh_packet)(struct rgi_mesh_packet *packet);
 };
 
 extern const rgi_kernels rgi_kernels_portable;

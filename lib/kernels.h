@@ -321,10 +321,17 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 
 #include "kernels_packet.h"
 
-#if defined(RGI_NO_MESH)
-#define mesh_one NULL
+#if !defined(RGI_NO_MESH)
+#include "kernels_mesh_packet.h"
 #endif
 
-const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,   prepare,
-                                                       to_frame,           bound,        meet,          trace_one,
-                                                       trace_some,         trace_packet, trace_packets, mesh_one};
+#if defined(RGI_NO_MESH)
+#define mesh_one NULL
+#define mesh_enter NULL
+#define mesh_packet NULL
+#endif
+
+const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
+    RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,   prepare,  to_frame,   bound,      meet,
+    trace_one,          trace_some,   trace_packet,  trace_packets,
+    mesh_one,           mesh_enter,   mesh_packet};

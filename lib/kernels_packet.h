@@ -153,7 +153,7 @@ RGI_INLINE bool bound_slopes(rgi_packet *p, uint32_t which, f16 per_way, f16 pad
     return true;
 }
 
-static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *middle) {
+static bool bound_in(rgi_packet *p, double scale, const rgi_middle *middle) {
     float d[3] = {fabsf(p->direction[0][0]), fabsf(p->direction[1][0]), fabsf(p->direction[2][0])};
     p->axis = d[1] > d[0] ? 1 : 0;
     if (d[2] > d[p->axis]) p->axis = 2;
@@ -173,7 +173,7 @@ static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *m
     f16 first = f16_load(p->t_first), behind = f16_sub(f16_set(0), f16_fma(pad, f16_set(4), f16_set(0x1p-60f)));
     if (f16_le(first, behind)) return false;
     f16 per_way = f16_mul(f16_load(p->inverse[p->axis]), f16_set(p->sense));
-    float radius = (float)(middle->radius * lattice->scale);
+    float radius = (float)(middle->radius * scale);
     if (!bound_slopes(p, 0, per_way, pad, radius, middle->spacing)) return false;
     if (!bound_slopes(p, 1, per_way, pad, radius, middle->spacing)) return false;
     f16 start = f16_mul(f16_load(p->origin[p->axis]), f16_set(p->sense));
@@ -183,6 +183,10 @@ static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *m
     p->start_last += 0x1p-18f * (fabsf(p->start_last) + (float)middle->extent);
     p->pad_most = f16_most(f16_load(p->pad));
     return true;
+}
+
+static bool bound(rgi_packet *p, const rgi_lattice *lattice, const rgi_middle *middle) {
+    return bound_in(p, lattice->scale, middle);
 }
 
 /* One ball, all rays. Returns whether t_hi of some ray may have changed. */
@@ -241,7 +245,7 @@ RGI_INLINE bool meet_box(rgi_packet *p, const float *lo, const float *hi, uint32
         last = f16_min(f16_add(f16_max(one, other), f16_load(p->far[a])), last);
     }
     uint32_t met = f16_le(first, last) & p->active;
-    settle_all(p, met, slot);
+    if (!(met & (met - 1)) || !p->ask_mesh(p, met, slot)) settle_all(p, met, slot);
     return met != 0;
 }
 

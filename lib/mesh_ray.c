@@ -10,20 +10,43 @@
  * in double may be wrong by.
  */
 static void make_filter(rgi_mesh_ray *m) {
-    const rgi_triangle_ray *t = &m->triangles;
-    const float *o = m->beam.origin, *d = m->beam.direction;
-    rgi_triangle_filter *f = &m->filter;
-    f->x = (uint32_t)t->x;
-    f->y = (uint32_t)t->y;
-    f->z = (uint32_t)t->z;
-    f->origin_x = o[t->x];
-    f->origin_y = o[t->y];
-    f->origin_z = o[t->z];
-    float inverse = m->beam.inverse[t->z];
-    f->shear_x = d[t->x] * inverse;
-    f->shear_y = d[t->y] * inverse;
-    f->error =
-        0x1p-20f * ((float)m->mesh->middle.extent + fabsf(o[0]) + fabsf(o[1]) + fabsf(o[2])) + m->mesh->rounding;
+    const rgi_beam *b = &m->beam;
+    rgi_triangle_filter_init(&m->filter, &m->triangles, b->origin, b->direction, b->inverse[m->triangles.z],
+                             rgi_place_error(m->mesh, b->origin));
+}
+
+/* A ray of a packet on its own, for triangles. */
+static void take_out(const rgi_mesh_packet *m, uint32_t ray, rgi_triangle_ray *t, rgi_local_ray *local) {
+    for (int a = 0; a < 3; a++) {
+        local->origin[a] = m->origin[a][ray];
+        local->direction[a] = m->direction[a][ray];
+    }
+    local->shift = m->shift[ray];
+    t->ray = local;
+    t->x = (int)m->filters[ray].x;
+    t->y = (int)m->filters[ray].y;
+    t->z = (int)m->filters[ray].z;
+    t->shear[0] = m->shear[0][ray];
+    t->shear[1] = m->shear[1][ray];
+}
+
+void rgi_mesh_packet_describe(const rgi_mesh_packet *m, uint32_t ray, const rgi_mesh_leaf *leaf, uint32_t triangle,
+                              rgi_candidate *candidate) {
+    rgi_triangle_ray t;
+    rgi_local_ray local;
+    take_out(m, ray, &t, &local);
+    (void)rgi_triangle_meets(&t, m->mesh, leaf, triangle, candidate);
+}
+
+bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const rgi_mesh_leaf *leaf, uint32_t triangle,
+                          double *at) {
+    rgi_triangle_ray t;
+    rgi_local_ray local;
+    rgi_candidate c;
+    take_out(m, ray, &t, &local);
+    uint32_t side = rgi_triangle_meets(&t, m->mesh, leaf, triangle, &c);
+    *at = c.t;
+    return side & m->sides;
 }
 
 bool rgi_mesh_begin(rgi_mesh_ray *m, const rgi_mesh *mesh, const rgi_local_ray *ray) {

@@ -124,10 +124,31 @@ bool rgi_query_leave(rgi_query *q, const rgi_mesh_ray *inside) {
     return end_test(q, inside->triangles.found, &inside->triangles.best);
 }
 
-void rgi_query_init(rgi_query *q, const rgi_call *c) {
+bool rgi_query_take(rgi_query *q, uint32_t slot, const rgi_candidate *candidate) {
+    q->testing = rgi_scene_object(q->call->scene, slot);
+    q->testing_id = rgi_object_id(q->testing, slot);
+    return end_test(q, true, candidate);
+}
+
+bool rgi_query_recall(rgi_query *q, uint32_t slot, const rgi_mesh_leaf *leaf, uint32_t triangle) {
+    const rgi_object *object = rgi_scene_object(q->call->scene, slot);
+    rgi_candidate candidate;
+    rgi_triangle_ray ray;
+    /* It does not pass the object by: it hits it. */
+    (void)rgi_object_local(object, rgi_scene_linear(q->call->scene, object), &q->ray, &q->local);
+    rgi_triangle_ray_init(&ray, &q->local);
+    (void)rgi_triangle_meets(&ray, object->shape->of.mesh, leaf, triangle, &candidate);
+    return rgi_query_take(q, slot, &candidate);
+}
+
+uint32_t rgi_query_sides(const rgi_call *c) {
     static const uint32_t sides[] = {RGI_FRONT | RGI_BACK, RGI_FRONT, RGI_BACK};
+    return sides[c->config.cull];
+}
+
+void rgi_query_init(rgi_query *q, const rgi_call *c) {
     q->call = c;
-    q->local.sides = sides[c->config.cull];
+    q->local.sides = rgi_query_sides(c);
     q->local.any = c->any;
     q->local.accept = c->config.filter ? filter : NULL;
     q->local.context = q;

@@ -45,6 +45,9 @@ typedef struct rgi_query {
     rgi_candidate best;
 } rgi_query;
 
+/** The sides of surfaces that count in a call. */
+uint32_t rgi_query_sides(const rgi_call *call);
+
 /** For all rays of a call. */
 void rgi_query_init(rgi_query *query, const rgi_call *call);
 
@@ -64,6 +67,12 @@ bool rgi_query_visit(void *context, uint32_t slot);
  * through it and to leave, which returns true if nothing more is wanted. */
 bool rgi_query_enter(rgi_query *query, uint32_t slot, rgi_mesh_ray *inside);
 bool rgi_query_leave(rgi_query *query, const rgi_mesh_ray *inside);
+
+/** Takes a hit on a triangle of a mesh that is known to be the nearest so far. */
+bool rgi_query_recall(rgi_query *query, uint32_t slot, const rgi_mesh_leaf *leaf, uint32_t triangle);
+
+/** Takes a hit that was found another way. Returns true if nothing more is wanted. */
+bool rgi_query_take(rgi_query *query, uint32_t slot, const rgi_candidate *candidate);
 
 /** Writes what is wanted of the ray. */
 void rgi_query_write(const rgi_query *query);

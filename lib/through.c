@@ -16,6 +16,14 @@ enum {
     MOST_LOST = 4
 };
 
+/** Hits that packets have found in meshes, of rays that have no query yet. */
+typedef struct known {
+    uint32_t rays; /* bits of those that have one */
+    double t[RGI_PACKET];
+    uint32_t slot[RGI_PACKET], triangle[RGI_PACKET];
+    const rgi_mesh_leaf *leaf[RGI_PACKET];
+} known;
+
 /** Rays that are worked on at a time. */
 typedef struct group {
     const rgi_call *call;
@@ -29,6 +37,7 @@ typedef struct group {
     bool together;              /* they go the same way, as `packet` */
     rgi_packet packet;
     rgi_bundle bundle;
+    known known;
     rgi_query queries[RGI_PACKET];
 } group;
 
@@ -182,6 +191,7 @@ static bool load(group *g) {
         b->mask[i] = (uint32_t)rgi_load_integer(&rays->mask, i < g->count ? g->first + i : g->first, UINT32_MAX);
     b->count = g->count;
     g->made = 0;
+    g->known.rays = 0;
     return g->call->scene->kernels->prepare(b);
 }
 
@@ -202,6 +212,10 @@ static rgi_query *query_of(group *g, uint32_t i) {
     q->ray.to_world = b->to_world[i];
     q->ray.to_world2 = b->to_world2[i];
     q->ray.mask = b->mask[i];
+    if (g->known.rays >> i & 1) {
+        g->known.rays &= ~(1u << i);
+        (void)rgi_query_recall(q, g->known.slot[i], g->known.leaf[i], g->known.triangle[i]);
+    }
     return q;
 }
 
@@ -220,6 +234,79 @@ static bool ask_of_packet(rgi_packet *p, uint32_t ray, uint32_t slot) {
     q->done = rgi_query_visit(q, slot);
     note_found(p, ray, q);
     return q->done;
+}
+
+/* The rays that see an object, of those named by bits, with the range of t in which they look for hits. */
+static uint32_t join_mesh(const group *g, const rgi_object *object, uint32_t rays, rgi_mesh_packet *m) {
+    const rgi_bundle *b = &g->bundle;
+    for (uint32_t i = 0; i < RGI_PACKET; i++) {
+        if (!(object->mask & b->mask[i])) rays &= ~(1u << i);
+        m->t_max[i] = g->made >> i & 1         ? g->queries[i].walk.t_max
+                      : g->known.rays >> i & 1 ? g->known.t[i]
+                                               : b->t_max[i];
+    }
+    return rays;
+}
+
+/* Before another object is asked about, what was certain so far is. */
+static void ask_certain(rgi_packet *p, uint32_t rays) {
+    for (rays &= p->certain; rays; rays &= rays - 1) {
+        uint32_t ray = (uint32_t)__builtin_ctz(rays), best;
+        memcpy(&best, &p->best[ray], sizeof best);
+        p->certain &= ~(1u << ray);
+        if (ask_of_packet(p, ray, best)) p->active &= ~(1u << ray);
+    }
+}
+
+/* Keeps a hit for a ray without a query; one that has a query takes it. */
+static void take_from_mesh(group *g, const rgi_mesh_packet *m, uint32_t ray, uint32_t slot) {
+    known *k = &g->known;
+    rgi_packet *p = &g->packet;
+    if (g->made >> ray & 1) {
+        rgi_candidate candidate;
+        rgi_query *q = &g->queries[ray];
+        rgi_mesh_packet_describe(m, ray, m->leaf[ray], m->triangle[ray], &candidate);
+        q->done = rgi_query_take(q, slot, &candidate);
+        note_found(p, ray, q);
+        return;
+    }
+    const rg_scene *scene = g->call->scene;
+    if (k->rays >> ray & 1 && m->t_max[ray] == k->t[ray] &&
+        rgi_object_id(rgi_scene_object(scene, slot), slot) >=
+            rgi_object_id(rgi_scene_object(scene, k->slot[ray]), k->slot[ray]))
+        return;
+    const rgi_beam_scale scale = {p->shift[ray], p->length[ray]};
+    k->rays |= 1u << ray;
+    k->t[ray] = m->t_max[ray];
+    k->slot[ray] = slot;
+    k->leaf[ray] = m->leaf[ray];
+    k->triangle[ray] = m->triangle[ray];
+    p->found |= 1u << ray;
+    p->t_hi[ray] = rgi_beam_above(&scale, p->pad[ray], k->t[ray]);
+    p->t_lo[ray] = rgi_beam_below(&scale, p->pad[ray], k->t[ray]);
+}
+
+/* What a kernel asks for several rays of a packet about a mesh: they go through it together, if they can. */
+static bool ask_mesh(rgi_packet *p, uint32_t rays, uint32_t slot) {
+    group *g = p->context;
+    const rg_scene *scene = g->call->scene;
+    const rgi_object *object = rgi_scene_object(scene, slot);
+    rgi_mesh_packet m;
+    if (object->shape->kind != RG_SHAPE_MESH || g->call->config.filter) return false;
+    ask_certain(p, rays);
+    scene->kernels->mesh_enter(&g->bundle, object, rgi_scene_linear(scene, object), &m);
+    m.rays.active = join_mesh(g, object, rays & p->active, &m);
+    m.rays.any = g->call->any;
+    m.sides = rgi_query_sides(g->call);
+    if (!m.rays.active) return true;
+    if (!scene->kernels->mesh_packet(&m)) return false;
+    if (g->call->any) {
+        p->certain |= m.found;
+        p->active &= ~m.found;
+        return true;
+    }
+    for (uint32_t rest = m.found; rest; rest &= rest - 1) take_from_mesh(g, &m, (uint32_t)__builtin_ctz(rest), slot);
+    return true;
 }
 
 /* Objects without a cell are asked before the others, for each ray. */
@@ -254,7 +341,16 @@ static uint32_t meet_certain(const group *g, const rgi_packet *p, rgi_meeting *m
     return p->certain & m->met;
 }
 
-/* Writes the hits that are certain and the misses of rays that asked nothing. Returns their bits. */
+static void write_known(const group *g, uint32_t i) {
+    const rgi_call *c = g->call;
+    const known *k = &g->known;
+    rgi_object *object = rgi_scene_object(c->scene, k->slot[i]);
+    rgi_store(&c->hits.t, g->first + i, k->t[i] * g->bundle.to_world[i] * g->bundle.to_world2[i]);
+    rgi_store_integer(&c->hits.object, g->first + i, rgi_object_id(object, k->slot[i]));
+    rgi_store_integer(&c->hits.primitive, g->first + i, k->leaf[i]->primitive[k->triangle[i]]);
+}
+
+/* Writes the hits that are certain, or known, and the misses of rays that asked nothing. Returns their bits. */
 static uint32_t write_unasked(const group *g, const rgi_packet *p) {
     const rgi_call *c = g->call;
     rgi_meeting m;
@@ -265,6 +361,10 @@ static uint32_t write_unasked(const group *g, const rgi_packet *p) {
     for (uint32_t i = 0; i < g->count; i++) {
         bool hit = met >> i & 1;
         if (!(written >> i & 1)) continue;
+        if (!hit && g->known.rays >> i & 1) {
+            write_known(g, i);
+            continue;
+        }
         rgi_store(&c->hits.t, g->first + i, hit ? m.t[i] : INFINITY);
         rgi_store_integer(&c->hits.object, g->first + i, hit ? ids[i] : RG_NO_OBJECT);
         rgi_store_integer(&c->hits.primitive, g->first + i, hit ? 0 : RG_NO_PRIMITIVE);
@@ -335,6 +435,7 @@ static void begin(group *g) {
     p->ask_all = asks_all(c);
     for (uint32_t i = 0; i < g->count; i++) p->ask_all |= g->bundle.mask[i] == 0;
     p->ask = ask_of_packet;
+    p->ask_mesh = ask_mesh;
     p->context = g;
     p->bundle = &g->bundle;
 }

@@ -3,19 +3,9 @@
 
 #include "vec.h"
 
-/* A ray that runs along the triangle's plane as closely as that, in parts of the lengths of direction and normal. */
-#define GRAZING 0x1p-24
-
 void rgi_triangle_ray_init(rgi_triangle_ray *t, const rgi_local_ray *ray) {
-    const double *d = ray->direction;
     t->ray = ray;
-    /* No branches: which axis it is can't be foreseen. */
-    int y_over_x = !(fabs(d[0]) > fabs(d[1])), z_over = fabs(d[2]) > rgi_max(fabs(d[0]), fabs(d[1]));
-    t->z = z_over ? 2 : y_over_x;
-    t->x = (0x021 >> 4 * t->z) & 3; /* after 0 comes 1, after 1 2, after 2 0 */
-    t->y = (0x102 >> 4 * t->z) & 3;
-    t->shear[0] = d[t->x] / d[t->z];
-    t->shear[1] = d[t->y] / d[t->z];
+    rgi_triangle_axes(t, ray->direction);
     t->found = false;
     t->best.t = ray->t_max;
 }
@@ -56,7 +46,7 @@ static double plane_root(const rgi_triangle_ray *t, const double normal[3], doub
     double root = along != 0 ? rgi_dot(normal, r[0]) / along : low;
     root = rgi_min(rgi_max(root, low), high);
     double lengths = (fabs(normal[0]) + fabs(normal[1]) + fabs(normal[2])) * fabs(dz);
-    return fabs(along) < GRAZING * lengths ? in_box(d, r, root) : root;
+    return fabs(along) < RGI_GRAZING * lengths ? in_box(d, r, root) : root;
 }
 
 /*
@@ -83,14 +73,15 @@ static bool meets(const rgi_triangle_ray *t, double v[3][3], double *root, uint3
     return true;
 }
 
-static void corners_of(const rgi_mesh *mesh, const rgi_mesh_leaf *leaf, uint32_t triangle, double v[3][3]) {
-    for (int c = 0; c < 3; c++) {
-        uint32_t lane = leaf->corner[c][triangle];
-        if (mesh->vertices)
-            rgi_copy(mesh->vertices[mesh->vertex_of[leaf->number][lane]], v[c]);
-        else
-            rgi_set(v[c], leaf->at[0][lane], leaf->at[1][lane], leaf->at[2][lane]);
-    }
+uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mesh_leaf *leaf,
+                            uint32_t triangle, rgi_candidate *candidate) {
+    double v[3][3], root;
+    uint32_t side;
+    rgi_triangle_corners(mesh, leaf, triangle, v);
+    if (!meets(t, v, &root, &side, candidate)) return 0;
+    candidate->t = t->ray->shift + root;
+    candidate->primitive = leaf->primitive[triangle];
+    return side;
 }
 
 bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mesh_leaf *leaf, uint32_t triangles) {
@@ -98,7 +89,7 @@ bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mes
         uint32_t i = (uint32_t)__builtin_ctz(triangles), side;
         rgi_candidate c;
         double root, v[3][3];
-        corners_of(mesh, leaf, i, v);
+        rgi_triangle_corners(mesh, leaf, i, v);
         if (!meets(t, v, &root, &side, &c)) continue;
         if (!rgi_in_range(t->ray, root, side, &c)) continue;
         c.primitive = leaf->primitive[i];

@@ -21,6 +21,11 @@ enum { OBJECTS = 1500, LONE_ROUNDS = SHORT_TESTS ? 10 : 20, BATCHES = SHORT_TEST
  * The direction from an eye into an object, so near to its silhouette or to an edge that the last bits of a float
  * decide: where every error that is not accounted for shows.
  */
+static bool no_mesh(rgi_packet *p, uint32_t rays, uint32_t slot) {
+    (void)p, (void)rays, (void)slot;
+    return false;
+}
+
 static void graze(const rgi_bound *b, const double eye[3], double d[3]) {
     double inside = pow(2, -8 - 28 * unit_random()), along[3], across[3], distance = 0, dot = 0, length = 0;
     for (int a = 0; a < 3; a++) {
@@ -289,6 +294,7 @@ static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count
     p.any = mode == 2;
     p.ask_all = mode == 0;
     p.ask = ask_packet;
+    p.ask_mesh = no_mesh;
     p.context = witnesses;
     p.bundle = &b;
     p.found = 0;
