@@ -19,6 +19,8 @@ typedef struct rgi_kernels rgi_kernels;
 struct rgi_mesh_ray;
 struct rgi_mesh_packet;
 struct rgi_object;
+struct rgi_wrap;
+struct rgi_cut;
 
 /** Entries of a beam's stack; what goes deeper is walked by recursion. */
 enum { RGI_STACK = 256 };
@@ -184,6 +186,9 @@ struct rgi_kernels {
                        struct rgi_mesh_packet *packet);
     /** Takes them through, if they go the same way; else false: nothing was done. */
     bool (*mesh_packet)(struct rgi_mesh_packet *packet);
+    /** Finds the plane between bins that parts the items of a mesh at the least cost; `fill`: items of a leaf. */
+    void (*find_split)(const struct rgi_wrap *items, uint32_t count, const struct rgi_wrap *centres,
+                       const float scales[3], uint32_t bins, uint32_t fill, struct rgi_cut *best);
 };
 
 extern const rgi_kernels rgi_kernels_portable;

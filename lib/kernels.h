@@ -322,6 +322,7 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 #include "kernels_packet.h"
 
 #if !defined(RGI_NO_MESH)
+#include "kernels_build.h"
 #include "kernels_mesh_packet.h"
 #endif
 
@@ -329,9 +330,10 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 #define mesh_one NULL
 #define mesh_enter NULL
 #define mesh_packet NULL
+#define find_split NULL
 #endif
 
 const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
     RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,   prepare,  to_frame,   bound,      meet,
     trace_one,          trace_some,   trace_packet,  trace_packets,
-    mesh_one,           mesh_enter,   mesh_packet};
+    mesh_one,           mesh_enter,   mesh_packet, find_split};

@@ -24,9 +24,32 @@ RGI_INLINE uint32_t meet_triangles(const rgi_mesh_leaf *leaf, const rgi_triangle
     return in & ((1u << leaf->triangles) - 1);
 }
 
+/* The same for the leaf of a soup. The margin is of each triangle's own places, S being the sum of their sizes: e S of
+ * the errors, 2^-22 S^2 of the rounding. */
+RGI_INLINE uint32_t meet_soup(const rgi_soup_leaf *leaf, const rgi_triangle_filter *r) {
+    f8 x[3], y[3], size = f8_set(0), zero = f8_set(0);
+    for (int c = 0; c < 3; c++) {
+        f8 z = f8_sub(f8_load(leaf->at[c][r->z]), f8_set(r->origin_z));
+        x[c] = f8_fma(z, f8_set(-r->shear_x), f8_sub(f8_load(leaf->at[c][r->x]), f8_set(r->origin_x)));
+        y[c] = f8_fma(z, f8_set(-r->shear_y), f8_sub(f8_load(leaf->at[c][r->y]), f8_set(r->origin_y)));
+        size = f8_add(size, f8_max(x[c], f8_sub(zero, x[c])));
+        size = f8_add(size, f8_max(y[c], f8_sub(zero, y[c])));
+    }
+    f8 e0 = f8_sub(f8_mul(x[1], y[2]), f8_mul(y[1], x[2]));
+    f8 e1 = f8_sub(f8_mul(x[2], y[0]), f8_mul(y[2], x[0]));
+    f8 e2 = f8_sub(f8_mul(x[0], y[1]), f8_mul(y[0], x[1]));
+    f8 margin = f8_fma(size, f8_set(0x1p-21f), f8_set(2 * r->error));
+    margin = f8_fma(size, margin, f8_set(4 * r->error * r->error));
+    return f8_le(f8_sub(zero, margin), f8_min(e0, f8_min(e1, e2))) | f8_le(f8_max(e0, f8_max(e1, e2)), margin);
+}
+
+RGI_INLINE uint32_t meet_leaf(const rgi_mesh *mesh, const void *leaf, const rgi_triangle_filter *r) {
+    return mesh->soup ? meet_soup(leaf, r) : meet_triangles(leaf, r);
+}
+
 RGI_INLINE bool visit_leaf(rgi_mesh_ray *m, rgi_mesh_ref ref) {
-    const rgi_mesh_leaf *leaf = rgi_mesh_at(m->mesh, ref);
-    uint32_t met = meet_triangles(leaf, &m->filter);
+    const void *leaf = rgi_mesh_at(m->mesh, ref);
+    uint32_t met = meet_leaf(m->mesh, leaf, &m->filter);
     return met && rgi_mesh_test(m, leaf, met);
 }
 

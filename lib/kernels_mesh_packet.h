@@ -178,7 +178,7 @@ typedef struct pairs {
 
 /* The triangle test of triangle.c for 16 pairs, the same operations in the same order. Returns the bits of those that
  * are met, with the roots; *odd: of those that run along the plane, for which the roots are not right. */
-static uint32_t meet_pairs(const rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, const pairs *q, double t[RGI_PACKET],
+static uint32_t meet_pairs(const rgi_mesh_packet *m, const void *leaf, const pairs *q, double t[RGI_PACKET],
                            uint32_t *odd) {
     const rgi_triangle_filter *f = &m->filters[q->ray[0]];
     double v[3][3][RGI_PACKET], r[3][3][RGI_PACKET], d[3][RGI_PACKET], e[3][RGI_PACKET], px[3][RGI_PACKET];
@@ -240,11 +240,11 @@ static uint32_t meet_pairs(const rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, 
 }
 
 /* A hit of a ray, if it is in range and before the last. */
-RGI_INLINE bool take_hit(rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, uint32_t ray, uint32_t triangle, double t) {
+RGI_INLINE bool take_hit(rgi_mesh_packet *m, const void *leaf, uint32_t ray, uint32_t triangle, double t) {
     uint32_t bit = 1u << ray;
     if (!(t >= m->t_min[ray] && t <= m->t_max[ray])) return false;
     if (m->found & bit && t == m->t_max[ray] &&
-        leaf->primitive[triangle] > m->leaf[ray]->primitive[m->triangle[ray]])
+        rgi_mesh_primitive(m->mesh, leaf, triangle) > rgi_mesh_primitive(m->mesh, m->leaf[ray], m->triangle[ray]))
         return false;
     m->t_max[ray] = t;
     m->leaf[ray] = leaf;
@@ -255,7 +255,7 @@ RGI_INLINE bool take_hit(rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, uint32_t
 }
 
 /* Up to 16 pairs. Returns whether some ray has a nearer hit now. */
-static bool settle_pairs(rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, const pairs *q, uint32_t count) {
+static bool settle_pairs(rgi_mesh_packet *m, const void *leaf, const pairs *q, uint32_t count) {
     double t[RGI_PACKET];
     uint32_t odd, used = (1u << count) - 1;
     bool changed = false;
@@ -276,12 +276,12 @@ static bool settle_pairs(rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, const pa
 }
 
 /* The same for rays of one axis, any number of pairs: it is better not to be foreseen how many a ray adds. */
-RGI_INLINE bool visit_leaf_along(rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, uint32_t rays) {
+RGI_INLINE bool visit_leaf_along(rgi_mesh_packet *m, const void *leaf, uint32_t rays) {
     bool changed = false;
     pairs q;
     uint32_t count = 0;
     for (; rays; rays &= rays - 1) {
-        uint32_t i = (uint32_t)__builtin_ctz(rays), met = meet_triangles(leaf, &m->filters[i]);
+        uint32_t i = (uint32_t)__builtin_ctz(rays), met = meet_leaf(m->mesh, leaf, &m->filters[i]);
         q.ray[count] = (uint8_t)i;
         q.triangle[count] = (uint8_t)__builtin_ctz(met | 1u << RGI_LEAF);
         count += met != 0;
@@ -306,7 +306,7 @@ RGI_INLINE bool visit_leaf_along(rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, 
 }
 
 /* A leaf for each ray on its own. */
-RGI_INLINE bool visit_leaf_with(rgi_mesh_packet *m, const rgi_mesh_leaf *leaf, uint32_t rays) {
+RGI_INLINE bool visit_leaf_with(rgi_mesh_packet *m, const void *leaf, uint32_t rays) {
     bool changed = false;
     for (int z = 0; z < 3; z++) {
         if (rays & m->along[z]) changed |= visit_leaf_along(m, leaf, rays & m->along[z]);

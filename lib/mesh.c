@@ -16,6 +16,9 @@
 #define EXACT_LEAST 0x1p-40
 #define EXACT_MOST 0x1p40
 
+/* Triangles that a leaf of a connected mesh holds, as a rule, if it has not too many vertices. */
+enum { CONNECTED_FILL = 16 };
+
 static rg_result check_vertices(const rg_mesh_views *views, double *largest) {
     *largest = 0;
     for (uint64_t i = 0; i < views->vertex_count; i++) {
@@ -120,14 +123,22 @@ static rg_result make(rgi_making *making, const rg_mesh_views *views) {
         result = rgi_allocate(memory, 2 * (uint64_t)mesh->triangle_count, sizeof *making->branches, "building a mesh",
                               &making->branches);
     if (result) return result;
+    /* A connected mesh has half as many vertices as triangles, a soup three times as many. */
+    mesh->soup = mesh->vertex_count > mesh->triangle_count;
+    making->fill = mesh->soup ? RGI_SOUP_LEAF : CONNECTED_FILL;
     set_frame(mesh);
     copy_vertices(making, views);
     rgi_branches_make(making);
-    return rgi_lines_make(making);
+    result = rgi_lines_make(making);
+    if (!result && mesh->vertices) {
+        mesh->corners = making->triangles;
+        making->triangles = NULL;
+    }
+    return result;
 }
 
 static rg_result fill(rgi_mesh *mesh, const rg_mesh_views *views) {
-    rgi_making making = {mesh, NULL, NULL, NULL, NULL};
+    rgi_making making = {mesh, NULL, NULL, NULL, NULL, 0};
     rgi_memory *memory = mesh->memory;
     rg_result result = make(&making, views);
     rgi_release(memory, making.branches, 2 * (uint64_t)mesh->triangle_count, sizeof *making.branches);
@@ -158,7 +169,7 @@ rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, rgi_me
 void rgi_mesh_destroy(rgi_mesh *mesh) {
     if (!mesh) return;
     rgi_memory *memory = mesh->memory;
-    rgi_release(memory, mesh->vertex_of, mesh->leaf_count, sizeof *mesh->vertex_of);
+    rgi_release(memory, mesh->corners, mesh->triangle_count, sizeof *mesh->corners);
     rgi_release(memory, mesh->lines, mesh->line_count, RGI_MESH_LINE);
     rgi_release(memory, mesh->vertices, mesh->vertex_count, sizeof *mesh->vertices);
     rgi_release(memory, mesh, 1, sizeof *mesh);

@@ -16,7 +16,7 @@
 
 struct rgi_kernels;
 
-enum { RGI_CHILDREN = 8, RGI_LEAF = 16, RGI_MESH_LINE = 64 };
+enum { RGI_CHILDREN = 8, RGI_LEAF = 16, RGI_SOUP_LEAF = 8, RGI_MESH_LINE = 64 };
 
 /** A node or a leaf by the cache line where it begins; leaves have the highest bit set. */
 typedef uint32_t rgi_mesh_ref;
@@ -41,22 +41,37 @@ typedef struct rgi_mesh_leaf {
     uint32_t spare;
 } rgi_mesh_leaf;
 
+/** The leaf of a soup, a mesh whose triangles share hardly any vertices. What is not used is NaN, with the number
+ * RGI_NO_TRIANGLE. */
+typedef struct rgi_soup_leaf {
+    float at[3][3][RGI_SOUP_LEAF]; /* corner, axis, triangle */
+    uint32_t primitive[RGI_SOUP_LEAF];
+} rgi_soup_leaf;
+
+#define RGI_NO_TRIANGLE UINT32_MAX
+
 typedef struct rgi_mesh {
     rgi_memory *memory;
     const struct rgi_kernels *kernels;
     char *lines; /* all nodes and leaves */
     uint32_t line_count;
-    uint32_t leaf_count;
     rgi_mesh_ref root;
     uint32_t triangle_count, vertex_count;
-    uint32_t (*vertex_of)[RGI_LEAF]; /* the caller's number of each vertex of each leaf */
+    bool soup;                       /* leaves are rgi_soup_leaf */
     double (*vertices)[3];           /* in double; NULL where the frame's are exact */
+    uint32_t (*corners)[3];          /* of each triangle, where the vertices are kept */
     double lo[3], hi[3];             /* of the triangles: vertices that none uses do not count */
     double origin[3], scale;         /* of the frame; a power of two */
     float pad;                       /* around boxes, in the frame */
     float rounding;                  /* what tests in double may be wrong by, in the frame */
     rgi_middle middle;
 } rgi_mesh;
+
+/** The caller's number of a triangle of a leaf. */
+static inline uint32_t rgi_mesh_primitive(const rgi_mesh *mesh, const void *leaf, uint32_t triangle) {
+    return mesh->soup ? ((const rgi_soup_leaf *)leaf)->primitive[triangle]
+                      : ((const rgi_mesh_leaf *)leaf)->primitive[triangle];
+}
 
 static inline void *rgi_mesh_at(const rgi_mesh *mesh, rgi_mesh_ref ref) {
     return mesh->lines + (size_t)(ref & ~RGI_MESH_LEAF) * RGI_MESH_LINE;

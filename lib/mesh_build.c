@@ -7,13 +7,14 @@
  */
 #include "mesh_build.h"
 
+#include "beam.h"
 #include "vec.h"
 
 #include <string.h>
 
 enum {
-    BINS = 16,
-    ATOM = 3, /* so few items are not parted */
+    /* Fewer leaves than that are parted by number, so that they are full. */
+    FEW_LEAVES = 4,
     /* Below this depth items are parted by number: the tree is at most 32 levels deeper. */
     MOST_DEPTH = 48
 };
@@ -21,17 +22,6 @@ enum {
 /* What a leaf costs against a node, tested for a ray (measured): all its triangles at once, then what may be hit. */
 #define LEAF_COST 1.2f
 #define TRIANGLE_COST 0.03f
-
-typedef struct bins {
-    rgi_wrap box[3][BINS];
-    uint32_t count[3][BINS];
-} bins;
-
-typedef struct split {
-    int axis; /* -1: none found */
-    int bin;  /* the first of the right side */
-    float cost;
-} split;
 
 /* Items on the way to a subtree: its root, the box of twice their centres, and how deep it is. */
 typedef struct part {
@@ -52,78 +42,21 @@ static inline void grow_centres(rgi_wrap *w, const rgi_item *it) {
     }
 }
 
-static inline int bin_of(float c, float lo, float scale) {
-    int b = (int)((c - lo) * scale);
-    return b >= BINS ? BINS - 1 : b;
-}
-
 /* So wide are the bins, 0 along an axis where all centres are the same. */
-static void bin_scales(const rgi_wrap *centres, float scales[3]) {
+static void bin_scales(const rgi_wrap *centres, uint32_t bins, float scales[3]) {
     for (int a = 0; a < 3; a++) {
-        float width = -centres->least[a + 4] - centres->least[a], scale = (float)BINS * (1 - 0x1p-20f) / width;
+        float width = -centres->least[a + 4] - centres->least[a], scale = (float)bins * (1 - 0x1p-20f) / width;
         scales[a] = width > 0 && scale < 0x1p100f ? scale : 0;
     }
 }
 
-static void fill_bins(bins *b, const rgi_item *items, uint32_t count, const rgi_wrap *centres,
-                      const float scales[3]) {
-    for (int a = 0; a < 3; a++) {
-        for (int i = 0; i < BINS; i++) rgi_wrap_empty(&b->box[a][i]);
-    }
-    memset(b->count, 0, sizeof b->count);
-    for (uint32_t i = 0; i < count; i++) {
-        for (int a = 0; a < 3; a++) {
-            int n = bin_of(centre(&items[i], a), centres->least[a], scales[a]);
-            rgi_wrap_grow(&b->box[a][n], &items[i]);
-            b->count[a][n]++;
-        }
-    }
-}
-
-/* The cheapest plane between the bins of one axis: cost = sum over both sides of area * count. */
-static void best_plane(const rgi_wrap box[BINS], const uint32_t counts[BINS], int axis, split *best) {
-    float right_cost[BINS];
-    rgi_wrap w;
-    uint32_t count = 0;
-    rgi_wrap_empty(&w);
-    for (int b = BINS - 1; b > 0; b--) {
-        rgi_wrap_grow(&w, &box[b]);
-        count += counts[b];
-        right_cost[b] = count ? rgi_wrap_half_area(&w) * (float)count : (float)INFINITY;
-    }
-    rgi_wrap_empty(&w);
-    count = 0;
-    for (int b = 0; b < BINS - 1; b++) {
-        rgi_wrap_grow(&w, &box[b]);
-        count += counts[b];
-        float cost = count ? rgi_wrap_half_area(&w) * (float)count + right_cost[b + 1] : (float)INFINITY;
-        if (cost < best->cost) {
-            best->cost = cost;
-            best->axis = axis;
-            best->bin = b + 1;
-        }
-    }
-}
-
-/* Not part of the recursion's frame. */
-static __attribute__((noinline)) split find_split(const rgi_item *items, uint32_t count, const rgi_wrap *centres,
-                                                  const float scales[3]) {
-    bins b;
-    split best = {-1, 0, (float)INFINITY};
-    fill_bins(&b, items, count, centres, scales);
-    for (int a = 0; a < 3; a++) {
-        if (scales[a] > 0) best_plane(b.box[a], b.count[a], a, &best);
-    }
-    return best;
-}
-
 /* Brings the items of the left side to the front; returns how many. */
 static uint32_t part_items(rgi_item *items, uint32_t count, const rgi_wrap *centres, const float scales[3],
-                           const split *s, rgi_wrap *left, rgi_wrap *right) {
+                           const rgi_cut *s, rgi_wrap *left, rgi_wrap *right) {
     const float lo = centres->least[s->axis], scale = scales[s->axis];
     uint32_t i = 0, j = count;
     while (i < j) {
-        if (bin_of(centre(&items[i], s->axis), lo, scale) < s->bin) {
+        if (rgi_bin_of(centre(&items[i], s->axis), lo, scale) < s->bin) {
             grow_centres(left, &items[i++]);
             continue;
         }
@@ -137,9 +70,12 @@ static uint32_t part_items(rgi_item *items, uint32_t count, const rgi_wrap *cent
 
 /* ------------------------------------------------------------------------------------------------- the costs */
 
-bool rgi_leaf_holds(const rgi_making *m, uint32_t first, uint32_t count) {
+/* Whether the triangles of some items have no more vertices than a leaf holds. */
+static bool leaf_holds(const rgi_making *m, uint32_t first, uint32_t count) {
     uint32_t seen[RGI_LEAF], vertices = 0;
+    if (m->mesh->soup) return count <= RGI_SOUP_LEAF;
     if (count > RGI_LEAF) return false;
+    if (3 * count <= RGI_LEAF) return true;
     memset(seen, 0xFF, sizeof seen); /* no vertex has that number */
     for (uint32_t i = first; i < first + count; i++) {
         uint32_t triangle;
@@ -171,7 +107,7 @@ static void find_costs(const rgi_making *m, rgi_branch *b) {
     float area = rgi_wrap_half_area(&b->box), leaf = (float)INFINITY;
     memset(b->places, 0, sizeof b->places);
     b->opened = 0;
-    if (rgi_leaf_holds(m, b->first, b->count)) leaf = area * (LEAF_COST + TRIANGLE_COST * (float)b->count);
+    if (!b->left) leaf = area * (LEAF_COST + TRIANGLE_COST * (float)b->count);
     b->cost[0] = leaf;
     if (b->left) {
         const rgi_branch *left = b + 1, *right = b + 2 * b->left;
@@ -196,28 +132,74 @@ static void find_costs(const rgi_making *m, rgi_branch *b) {
 
 /* -------------------------------------------------------------------------------------------------- the tree */
 
+/* Brings the `first` items with the least centres along an axis to the front: C. A. R. Hoare, "Find" (1961). */
+static void select_items(rgi_item *items, uint32_t count, int axis, uint32_t first) {
+    int64_t from = 0, to = (int64_t)count - 1, wanted = (int64_t)first - 1;
+    while (from < to) {
+        float pivot = centre(&items[wanted], axis);
+        int64_t i = from, j = to;
+        while (i <= j) {
+            while (centre(&items[i], axis) < pivot) i++;
+            while (centre(&items[j], axis) > pivot) j--;
+            if (i > j) break;
+            rgi_item swap = items[i];
+            items[i++] = items[j];
+            items[j--] = swap;
+        }
+        if (j < wanted) from = i;
+        if (i > wanted) to = j;
+    }
+}
+
+static float half_area_of(const rgi_item *items, uint32_t count) {
+    rgi_wrap w;
+    rgi_wrap_empty(&w);
+    for (uint32_t i = 0; i < count; i++) rgi_wrap_grow(&w, &items[i]);
+    return rgi_wrap_half_area(&w);
+}
+
+/* Parts items by number along the best axis: whole leaves to the left, near the middle. Returns how many that are. */
+static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill) {
+    uint32_t leaves = (count + fill - 1) / fill, left = leaves / 2 * fill;
+    float least = (float)INFINITY;
+    int best = 2;
+    if (left == 0 || left >= count) left = count / 2;
+    for (int a = 0; a < 3; a++) {
+        select_items(items, count, a, left);
+        float area = half_area_of(items, left) * (float)left +
+                     half_area_of(items + left, count - left) * (float)(count - left);
+        if (!(area < least)) continue;
+        least = area;
+        best = a;
+    }
+    if (best != 2) select_items(items, count, best, left);
+    return left;
+}
+
 static void make_branch(const rgi_making *m, rgi_branch *branch, const part *p) {
     rgi_item *items = m->items + p->first;
     part left = {p->first, 0, p->depth + 1, {{0}}}, right = left;
     branch->first = p->first;
     branch->count = p->count;
     branch->left = 0;
-    if (p->count <= ATOM) {
+    if (leaf_holds(m, p->first, p->count)) {
         rgi_wrap_empty(&branch->box);
         for (uint32_t i = 0; i < p->count; i++) rgi_wrap_grow(&branch->box, &items[i]);
         find_costs(m, branch);
         return;
     }
     float scales[3];
-    split s = {-1, 0, 0};
-    bin_scales(&p->centres, scales);
+    rgi_cut s = {-1, 0, 0};
+    bool few = p->count <= FEW_LEAVES * m->fill;
+    uint32_t bins = p->count < 16 * RGI_BINS ? RGI_BINS / 2 : RGI_BINS;
+    bin_scales(&p->centres, bins, scales);
     rgi_wrap_empty(&left.centres);
     rgi_wrap_empty(&right.centres);
-    if (p->depth < MOST_DEPTH) s = find_split(items, p->count, &p->centres, scales);
+    if (!few && p->depth < MOST_DEPTH) m->mesh->kernels->find_split(items, p->count, &p->centres, scales, bins, m->fill, &s);
     if (s.axis >= 0) {
         left.count = part_items(items, p->count, &p->centres, scales, &s, &left.centres, &right.centres);
     } else {
-        left.count = p->count / 2;
+        left.count = few ? part_by_number(items, p->count, m->fill) : p->count / 2;
         for (uint32_t i = 0; i < p->count; i++)
             grow_centres(i < left.count ? &left.centres : &right.centres, &items[i]);
     }

@@ -33,6 +33,19 @@ typedef struct rgi_branch {
     uint8_t opened;
 } rgi_branch;
 
+enum { RGI_BINS = 16 };
+
+/** Where items are parted. */
+typedef struct rgi_cut {
+    int axis; /* -1: nowhere */
+    int bin;  /* the first of the right side */
+    float cost;
+} rgi_cut;
+
+static inline int rgi_bin_of(float c, float lo, float scale) {
+    return (int)((c - lo) * scale);
+}
+
 /** What a tree is made from, and on the way. */
 typedef struct rgi_making {
     rgi_mesh *mesh;
@@ -40,6 +53,7 @@ typedef struct rgi_making {
     float (*at)[3];           /* vertices in the frame */
     rgi_item *items;
     rgi_branch *branches; /* 2 a triangle */
+    uint32_t fill;        /* triangles that a leaf holds as a rule */
 } rgi_making;
 
 /** Sets up items and branches and their costs. */
@@ -47,9 +61,6 @@ void rgi_branches_make(rgi_making *making);
 
 /** Makes lines, leaves and root out of the branches. */
 rg_result rgi_lines_make(const rgi_making *making);
-
-/** Whether the triangles of some items have no more vertices than a leaf holds. */
-bool rgi_leaf_holds(const rgi_making *making, uint32_t first, uint32_t count);
 
 static inline void rgi_wrap_empty(rgi_wrap *w) {
     for (int i = 0; i < 8; i++) w->least[i] = (float)INFINITY;

@@ -9,7 +9,7 @@
 
 enum {
     NODE_LINES = sizeof(rgi_mesh_node) / RGI_MESH_LINE,
-    LEAF_LINES = sizeof(rgi_mesh_leaf) / RGI_MESH_LINE,
+    LEAF_LINES = sizeof(rgi_mesh_leaf) / RGI_MESH_LINE, /* of soups, too */
     MOST_LINES = 0x7FFFFFFF
 };
 
@@ -17,7 +17,6 @@ enum {
 typedef struct writer {
     const rgi_making *making;
     uint64_t lines;
-    uint32_t leaves;
 } writer;
 
 typedef struct child {
@@ -51,7 +50,6 @@ static void count_lines(writer *w, const rgi_branch *b) {
     const rgi_branch *children[RGI_CHILDREN];
     if (is_leaf(b)) {
         w->lines += LEAF_LINES;
-        w->leaves++;
         return;
     }
     uint32_t count = gather_children(b, children);
@@ -82,13 +80,19 @@ static float longest_side(const rgi_mesh_leaf *leaf) {
     return longest * (1 + 0x1p-20f);
 }
 
-static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf, uint32_t number) {
-    uint32_t *numbers = m->mesh->vertex_of[number];
+/* The number of the triangle of an item. */
+static uint32_t number_of(const rgi_item *item) {
+    uint32_t number;
+    memcpy(&number, &item->least[3], sizeof number);
+    return number;
+}
+
+static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf) {
+    uint32_t numbers[RGI_LEAF];
     memset(leaf, 0, sizeof *leaf);
-    leaf->number = number;
     leaf->triangles = (uint16_t)b->count;
     for (uint32_t t = 0; t < b->count; t++) {
-        memcpy(&leaf->primitive[t], &m->items[b->first + t].least[3], sizeof leaf->primitive[t]);
+        leaf->primitive[t] = number_of(&m->items[b->first + t]);
         const uint32_t *corners = m->triangles[leaf->primitive[t]];
         for (int c = 0; c < 3; c++) leaf->corner[c][t] = lane_of(leaf, numbers, corners[c]);
     }
@@ -99,15 +103,42 @@ static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *
     leaf->longest = longest_side(leaf);
 }
 
-static void box_of_leaf(const rgi_mesh *mesh, const rgi_mesh_leaf *leaf, child *c) {
-    for (int a = 0; a < 3; a++) {
-        float lo = leaf->at[a][0], hi = lo;
-        for (int k = 1; k < RGI_LEAF; k++) {
-            lo = leaf->at[a][k] < lo ? leaf->at[a][k] : lo;
-            hi = leaf->at[a][k] > hi ? leaf->at[a][k] : hi;
+/* Lanes that hold no triangle are NaN, which no comparison lets pass. */
+static void write_soup_leaf(const rgi_making *m, const rgi_branch *b, rgi_soup_leaf *leaf) {
+    for (uint32_t t = 0; t < RGI_SOUP_LEAF; t++) {
+        bool used = t < b->count;
+        leaf->primitive[t] = used ? number_of(&m->items[b->first + t]) : RGI_NO_TRIANGLE;
+        for (int c = 0; c < 3; c++) {
+            for (int a = 0; a < 3; a++)
+                leaf->at[c][a][t] = used ? m->at[m->triangles[leaf->primitive[t]][c]][a] : (float)NAN;
         }
-        c->lo[a] = lo - mesh->pad;
-        c->hi[a] = hi + mesh->pad;
+    }
+}
+
+/* Grows a box by `count` points, whose coordinates along each axis are an array, `count` floats after the last. */
+static void grow_by_points(child *c, const float *at, uint32_t count) {
+    for (uint32_t a = 0; a < 3; a++) {
+        for (uint32_t k = 0; k < count; k++) {
+            float x = at[a * count + k];
+            c->lo[a] = x < c->lo[a] ? x : c->lo[a];
+            c->hi[a] = x > c->hi[a] ? x : c->hi[a];
+        }
+    }
+}
+
+static void box_of_leaf(const rgi_mesh *mesh, const void *leaf, child *out) {
+    for (int a = 0; a < 3; a++) {
+        out->lo[a] = (float)INFINITY;
+        out->hi[a] = -(float)INFINITY;
+    }
+    if (mesh->soup) {
+        for (int c = 0; c < 3; c++) grow_by_points(out, ((const rgi_soup_leaf *)leaf)->at[c][0], RGI_SOUP_LEAF);
+    } else {
+        grow_by_points(out, ((const rgi_mesh_leaf *)leaf)->at[0], RGI_LEAF);
+    }
+    for (int a = 0; a < 3; a++) {
+        out->lo[a] -= mesh->pad;
+        out->hi[a] += mesh->pad;
     }
 }
 
@@ -189,9 +220,12 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
     out->ref = (rgi_mesh_ref)w->lines;
     if (is_leaf(b)) {
         out->ref |= RGI_MESH_LEAF;
-        rgi_mesh_leaf *leaf = rgi_mesh_at(mesh, out->ref);
+        void *leaf = rgi_mesh_at(mesh, out->ref);
         w->lines += LEAF_LINES;
-        write_leaf(w->making, b, leaf, w->leaves++);
+        if (mesh->soup)
+            write_soup_leaf(w->making, b, leaf);
+        else
+            write_leaf(w->making, b, leaf);
         box_of_leaf(mesh, leaf, out);
         return;
     }
@@ -212,19 +246,15 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
 
 rg_result rgi_lines_make(const rgi_making *making) {
     rgi_mesh *mesh = making->mesh;
-    writer w = {making, 0, 0};
+    writer w = {making, 0};
     child root;
     count_lines(&w, making->branches);
     if (w.lines > MOST_LINES)
         return rgi_fail(RG_LIMIT_EXCEEDED, "the mesh is too large: %u triangles", mesh->triangle_count);
     mesh->line_count = (uint32_t)w.lines;
-    mesh->leaf_count = w.leaves;
     rg_result result = rgi_allocate(mesh->memory, mesh->line_count, RGI_MESH_LINE, "a mesh's tree", &mesh->lines);
-    if (!result)
-        result = rgi_allocate(mesh->memory, mesh->leaf_count, sizeof *mesh->vertex_of, "a mesh's vertices",
-                              &mesh->vertex_of);
     if (result) return result;
-    w.lines = w.leaves = 0;
+    w.lines = 0;
     write_lines(&w, making->branches, &root);
     mesh->root = root.ref;
     return RG_OK;

@@ -30,7 +30,7 @@ static void take_out(const rgi_mesh_packet *m, uint32_t ray, rgi_triangle_ray *t
     t->shear[1] = m->shear[1][ray];
 }
 
-void rgi_mesh_packet_describe(const rgi_mesh_packet *m, uint32_t ray, const rgi_mesh_leaf *leaf, uint32_t triangle,
+void rgi_mesh_packet_describe(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle,
                               rgi_candidate *candidate) {
     rgi_triangle_ray t;
     rgi_local_ray local;
@@ -38,7 +38,7 @@ void rgi_mesh_packet_describe(const rgi_mesh_packet *m, uint32_t ray, const rgi_
     (void)rgi_triangle_meets(&t, m->mesh, leaf, triangle, candidate);
 }
 
-bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const rgi_mesh_leaf *leaf, uint32_t triangle,
+bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle,
                           double *at) {
     rgi_triangle_ray t;
     rgi_local_ray local;
@@ -57,7 +57,7 @@ bool rgi_mesh_begin(rgi_mesh_ray *m, const rgi_mesh *mesh, const rgi_local_ray *
     return true;
 }
 
-bool rgi_mesh_test(rgi_mesh_ray *m, const rgi_mesh_leaf *leaf, uint32_t triangles) {
+bool rgi_mesh_test(rgi_mesh_ray *m, const void *leaf, uint32_t triangles) {
     if (rgi_triangles_test(&m->triangles, m->mesh, leaf, triangles)) return true;
     if (m->triangles.found) m->beam.t_max = rgi_beam_above(&m->beam.scale, m->beam.pad, m->triangles.best.t);
     return false;

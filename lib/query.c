@@ -130,7 +130,7 @@ bool rgi_query_take(rgi_query *q, uint32_t slot, const rgi_candidate *candidate)
     return end_test(q, true, candidate);
 }
 
-bool rgi_query_recall(rgi_query *q, uint32_t slot, const rgi_mesh_leaf *leaf, uint32_t triangle) {
+bool rgi_query_recall(rgi_query *q, uint32_t slot, const void *leaf, uint32_t triangle) {
     const rgi_object *object = rgi_scene_object(q->call->scene, slot);
     rgi_candidate candidate;
     rgi_triangle_ray ray;

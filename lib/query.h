@@ -69,7 +69,7 @@ bool rgi_query_enter(rgi_query *query, uint32_t slot, rgi_mesh_ray *inside);
 bool rgi_query_leave(rgi_query *query, const rgi_mesh_ray *inside);
 
 /** Takes a hit on a triangle of a mesh that is known to be the nearest so far. */
-bool rgi_query_recall(rgi_query *query, uint32_t slot, const rgi_mesh_leaf *leaf, uint32_t triangle);
+bool rgi_query_recall(rgi_query *query, uint32_t slot, const void *leaf, uint32_t triangle);
 
 /** Takes a hit that was found another way. Returns true if nothing more is wanted. */
 bool rgi_query_take(rgi_query *query, uint32_t slot, const rgi_candidate *candidate);

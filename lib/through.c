@@ -20,8 +20,8 @@ enum {
 typedef struct known {
     uint32_t rays; /* bits of those that have one */
     double t[RGI_PACKET];
-    uint32_t slot[RGI_PACKET], triangle[RGI_PACKET];
-    const rgi_mesh_leaf *leaf[RGI_PACKET];
+    uint32_t slot[RGI_PACKET], triangle[RGI_PACKET], primitive[RGI_PACKET];
+    const void *leaf[RGI_PACKET];
 } known;
 
 /** Rays that are worked on at a time. */
@@ -281,6 +281,7 @@ static void take_from_mesh(group *g, const rgi_mesh_packet *m, uint32_t ray, uin
     k->slot[ray] = slot;
     k->leaf[ray] = m->leaf[ray];
     k->triangle[ray] = m->triangle[ray];
+    k->primitive[ray] = rgi_mesh_primitive(m->mesh, m->leaf[ray], m->triangle[ray]);
     p->found |= 1u << ray;
     p->t_hi[ray] = rgi_beam_above(&scale, p->pad[ray], k->t[ray]);
     p->t_lo[ray] = rgi_beam_below(&scale, p->pad[ray], k->t[ray]);
@@ -347,7 +348,7 @@ static void write_known(const group *g, uint32_t i) {
     rgi_object *object = rgi_scene_object(c->scene, k->slot[i]);
     rgi_store(&c->hits.t, g->first + i, k->t[i] * g->bundle.to_world[i] * g->bundle.to_world2[i]);
     rgi_store_integer(&c->hits.object, g->first + i, rgi_object_id(object, k->slot[i]));
-    rgi_store_integer(&c->hits.primitive, g->first + i, k->leaf[i]->primitive[k->triangle[i]]);
+    rgi_store_integer(&c->hits.primitive, g->first + i, k->primitive[i]);
 }
 
 /* Writes the hits that are certain, or known, and the misses of rays that asked nothing. Returns their bits. */

@@ -73,18 +73,18 @@ static bool meets(const rgi_triangle_ray *t, double v[3][3], double *root, uint3
     return true;
 }
 
-uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mesh_leaf *leaf,
+uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf,
                             uint32_t triangle, rgi_candidate *candidate) {
     double v[3][3], root;
     uint32_t side;
     rgi_triangle_corners(mesh, leaf, triangle, v);
     if (!meets(t, v, &root, &side, candidate)) return 0;
     candidate->t = t->ray->shift + root;
-    candidate->primitive = leaf->primitive[triangle];
+    candidate->primitive = rgi_mesh_primitive(mesh, leaf, triangle);
     return side;
 }
 
-bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mesh_leaf *leaf, uint32_t triangles) {
+bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf, uint32_t triangles) {
     for (; triangles; triangles &= triangles - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(triangles), side;
         rgi_candidate c;
@@ -92,7 +92,7 @@ bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mes
         rgi_triangle_corners(mesh, leaf, i, v);
         if (!meets(t, v, &root, &side, &c)) continue;
         if (!rgi_in_range(t->ray, root, side, &c)) continue;
-        c.primitive = leaf->primitive[i];
+        c.primitive = rgi_mesh_primitive(mesh, leaf, i);
         if (c.t > t->best.t || (t->found && c.t == t->best.t && c.primitive > t->best.primitive)) continue;
         if (!rgi_accepted(t->ray, &c)) continue;
         t->best = c;

@@ -19,14 +19,19 @@ typedef struct rgi_triangle_ray {
 #define RGI_GRAZING 0x1p-24
 
 /** The corners of a triangle of a leaf, as they were given. */
-static inline void rgi_triangle_corners(const rgi_mesh *mesh, const rgi_mesh_leaf *leaf, uint32_t triangle,
-                                        double v[3][3]) {
-    for (int c = 0; c < 3; c++) {
-        uint32_t lane = leaf->corner[c][triangle];
-        if (mesh->vertices)
-            rgi_copy(mesh->vertices[mesh->vertex_of[leaf->number][lane]], v[c]);
-        else
-            rgi_set(v[c], leaf->at[0][lane], leaf->at[1][lane], leaf->at[2][lane]);
+static inline void rgi_triangle_corners(const rgi_mesh *mesh, const void *leaf, uint32_t triangle, double v[3][3]) {
+    if (mesh->vertices) {
+        const uint32_t *corners = mesh->corners[rgi_mesh_primitive(mesh, leaf, triangle)];
+        for (int c = 0; c < 3; c++) rgi_copy(mesh->vertices[corners[c]], v[c]);
+    } else if (mesh->soup) {
+        const rgi_soup_leaf *l = leaf;
+        for (int c = 0; c < 3; c++) rgi_set(v[c], l->at[c][0][triangle], l->at[c][1][triangle], l->at[c][2][triangle]);
+    } else {
+        const rgi_mesh_leaf *l = leaf;
+        for (int c = 0; c < 3; c++) {
+            uint32_t lane = l->corner[c][triangle];
+            rgi_set(v[c], l->at[0][lane], l->at[1][lane], l->at[2][lane]);
+        }
     }
 }
 
@@ -44,10 +49,10 @@ void rgi_triangle_ray_init(rgi_triangle_ray *t, const rgi_local_ray *ray);
 
 /** Tests triangles of a leaf, named by bits. Among equal t the lowest primitive wins. Returns true if nothing more is
  * wanted. */
-bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mesh_leaf *leaf, uint32_t triangles);
+bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf, uint32_t triangles);
 
 /** Returns the side of a triangle that the ray meets, wherever that is, and fills all of *candidate; 0: none. */
-uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const rgi_mesh_leaf *leaf,
+uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf,
                             uint32_t triangle, rgi_candidate *candidate);
 
 #endif

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* The part of the kernels that helps to build meshes; included by kernels.h alone. */
+#include "mesh_build.h"
+
+typedef struct bins {
+    rgi_wrap box[3][RGI_BINS];
+    uint32_t count[3][RGI_BINS];
+} bins;
+
+RGI_INLINE void grow(rgi_wrap *w, f8 by) {
+    f8_store(w->least, f8_min(f8_load(w->least), by));
+}
+
+/* For one axis, sum over both sides of area * leaves: such as are not full count whole. */
+RGI_INLINE void best_plane(const rgi_wrap *box, const uint32_t *counts, uint32_t bins, uint32_t fill, int axis,
+                           rgi_cut *best) {
+    float right_cost[RGI_BINS];
+    rgi_wrap w;
+    uint32_t count = 0;
+    rgi_wrap_empty(&w);
+    for (uint32_t b = bins - 1; b > 0; b--) {
+        grow(&w, f8_load(box[b].least));
+        count += counts[b];
+        right_cost[b] = count ? rgi_wrap_half_area(&w) * (float)((count + fill - 1) / fill) : (float)INFINITY;
+    }
+    rgi_wrap_empty(&w);
+    count = 0;
+    for (uint32_t b = 0; b < bins - 1; b++) {
+        grow(&w, f8_load(box[b].least));
+        count += counts[b];
+        float cost = rgi_wrap_half_area(&w) * (float)((count + fill - 1) / fill) + right_cost[b + 1];
+        if (count && cost < best->cost) {
+            best->cost = cost;
+            best->axis = axis;
+            best->bin = (int)b + 1;
+        }
+    }
+}
+
+static void find_split(const rgi_wrap *items, uint32_t count, const rgi_wrap *centres, const float scales[3],
+                       uint32_t used, uint32_t fill, rgi_cut *best) {
+    bins b;
+    for (int a = 0; a < 3; a++) {
+        for (uint32_t i = 0; i < used; i++) rgi_wrap_empty(&b.box[a][i]);
+    }
+    memset(b.count, 0, sizeof b.count);
+    for (uint32_t i = 0; i < count; i++) {
+        const float *item = items[i].least;
+        f8 box = f8_load(item);
+        for (int a = 0; a < 3; a++) {
+            int n = rgi_bin_of(item[a] - item[a + 4], centres->least[a], scales[a]);
+            grow(&b.box[a][n], box);
+            b.count[a][n]++;
+        }
+    }
+    best->axis = -1;
+    best->cost = (float)INFINITY;
+    for (int a = 0; a < 3; a++) {
+        if (scales[a] > 0) best_plane(b.box[a], b.count[a], used, fill, a, best);
+    }
+}
