@@ -128,8 +128,8 @@ static rg_result make(rgi_making *making, const rg_mesh_views *views) {
     making->fill = mesh->soup ? RGI_SOUP_LEAF : CONNECTED_FILL;
     set_frame(mesh);
     copy_vertices(making, views);
-    rgi_branches_make(making);
-    result = rgi_lines_make(making);
+    result = rgi_branches_make(making);
+    if (!result) result = rgi_lines_make(making);
     if (!result && mesh->vertices) {
         mesh->corners = making->triangles;
         making->triangles = NULL;

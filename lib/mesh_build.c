@@ -15,6 +15,10 @@
 enum {
     /* Fewer leaves than that are parted by number, so that they are full. */
     FEW_LEAVES = 4,
+    FEW_LEAVES_FAST = 32,
+    /* Parts that a large tree is cut into, to be made side by side, and how many triangles are large. */
+    PARTS = 128,
+    LEAST_SHARED = 16384,
     /* Below this depth items are parted by number: the tree is at most 32 levels deeper. */
     MOST_DEPTH = 48
 };
@@ -104,13 +108,13 @@ static float share(const rgi_branch *left, const rgi_branch *right, int places, 
 }
 
 static void find_costs(const rgi_making *m, rgi_branch *b) {
+    const rgi_branch *left = m->branches + b->children, *right = left + 1;
     float area = rgi_wrap_half_area(&b->box), leaf = (float)INFINITY;
     memset(b->places, 0, sizeof b->places);
     b->opened = 0;
-    if (!b->left) leaf = area * (LEAF_COST + TRIANGLE_COST * (float)b->count);
+    if (!b->children) leaf = area * (LEAF_COST + TRIANGLE_COST * (float)b->count);
     b->cost[0] = leaf;
-    if (b->left) {
-        const rgi_branch *left = b + 1, *right = b + 2 * b->left;
+    if (b->children) {
         uint8_t opened = 0;
         float node = area + share(left, right, RGI_CHILDREN, &opened);
         /* Of areas that are all 0 or all too large the sums can't be compared: then any way will do. */
@@ -121,9 +125,9 @@ static void find_costs(const rgi_making *m, rgi_branch *b) {
     }
     for (int i = 1; i < RGI_CHILDREN - 1; i++) {
         b->cost[i] = b->cost[i - 1];
-        if (!b->left) continue;
+        if (!b->children) continue;
         uint8_t of_left = 0;
-        float cost = share(b + 1, b + 2 * b->left, i + 1, &of_left);
+        float cost = share(left, right, i + 1, &of_left);
         if (!(cost < b->cost[i])) continue;
         b->cost[i] = cost;
         b->places[i] = of_left;
@@ -158,12 +162,29 @@ static float half_area_of(const rgi_item *items, uint32_t count) {
     return rgi_wrap_half_area(&w);
 }
 
-/* Parts items by number along the best axis: whole leaves to the left, near the middle. Returns how many that are. */
-static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill) {
+/* Leaves the scale of the longest axis alone: the others are 0, as of axes along which nothing can be parted. */
+static void keep_widest(float scales[3]) {
+    int widest = 0;
+    for (int a = 1; a < 3; a++) {
+        if (scales[a] > 0 && (scales[a] < scales[widest] || scales[widest] == 0)) widest = a;
+    }
+    for (int a = 0; a < 3; a++) {
+        if (a != widest) scales[a] = 0;
+    }
+}
+
+/* Parts items by number along the best axis, or the one that has a scale: whole leaves to the left, near the middle.
+ * Returns how many that are. */
+static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill, const float *scales) {
     uint32_t leaves = (count + fill - 1) / fill, left = leaves / 2 * fill;
     float least = (float)INFINITY;
     int best = 2;
     if (left == 0 || left >= count) left = count / 2;
+    for (int a = 0; a < 3 && scales; a++) {
+        if (!(scales[a] > 0)) continue;
+        select_items(items, count, a, left);
+        return left;
+    }
     for (int a = 0; a < 3; a++) {
         select_items(items, count, a, left);
         float area = half_area_of(items, left) * (float)left +
@@ -176,56 +197,116 @@ static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill) {
     return left;
 }
 
-static void make_branch(const rgi_making *m, rgi_branch *branch, const part *p) {
+/* Parts items where that costs least. Returns how many go to the left. */
+static uint32_t part_items_of(const rgi_making *m, const part *p, rgi_wrap *left, rgi_wrap *right) {
     rgi_item *items = m->items + p->first;
-    part left = {p->first, 0, p->depth + 1, {{0}}}, right = left;
-    branch->first = p->first;
-    branch->count = p->count;
-    branch->left = 0;
-    if (leaf_holds(m, p->first, p->count)) {
-        rgi_wrap_empty(&branch->box);
-        for (uint32_t i = 0; i < p->count; i++) rgi_wrap_grow(&branch->box, &items[i]);
-        find_costs(m, branch);
-        return;
-    }
+    uint32_t bins = p->count < 16 * RGI_BINS || m->fast ? RGI_BINS / 2 : RGI_BINS, count;
+    bool few = p->count <= (m->fast ? FEW_LEAVES_FAST : FEW_LEAVES) * m->fill;
+    rgi_cut cut = {-1, 0, 0};
     float scales[3];
-    rgi_cut s = {-1, 0, 0};
-    bool few = p->count <= FEW_LEAVES * m->fill;
-    uint32_t bins = p->count < 16 * RGI_BINS ? RGI_BINS / 2 : RGI_BINS;
     bin_scales(&p->centres, bins, scales);
-    rgi_wrap_empty(&left.centres);
-    rgi_wrap_empty(&right.centres);
-    if (!few && p->depth < MOST_DEPTH) m->mesh->kernels->find_split(items, p->count, &p->centres, scales, bins, m->fill, &s);
-    if (s.axis >= 0) {
-        left.count = part_items(items, p->count, &p->centres, scales, &s, &left.centres, &right.centres);
-    } else {
-        left.count = few ? part_by_number(items, p->count, m->fill) : p->count / 2;
-        for (uint32_t i = 0; i < p->count; i++)
-            grow_centres(i < left.count ? &left.centres : &right.centres, &items[i]);
-    }
-    right.first += left.count;
-    right.count = p->count - left.count;
-    branch->left = left.count;
-    make_branch(m, branch + 1, &left);
-    make_branch(m, branch + 2 * (size_t)left.count, &right);
-    branch->box = branch[1].box;
-    rgi_wrap_grow(&branch->box, &branch[2 * (size_t)left.count].box);
+    if (m->fast) keep_widest(scales);
+    rgi_wrap_empty(left);
+    rgi_wrap_empty(right);
+    if (!few && p->depth < MOST_DEPTH)
+        m->mesh->kernels->find_split(items, p->count, &p->centres, scales, bins, m->fill, &cut);
+    if (cut.axis >= 0) return part_items(items, p->count, &p->centres, scales, &cut, left, right);
+    count = few ? part_by_number(items, p->count, m->fill, m->fast ? scales : NULL) : p->count / 2;
+    for (uint32_t i = 0; i < p->count; i++) grow_centres(i < count ? left : right, &items[i]);
+    return count;
+}
+
+/* Subtrees that are made apart, by whoever is free. */
+typedef struct later {
+    rgi_making *making;
+    uint32_t most; /* of more items none is put off */
+    uint32_t count;
+    part parts[PARTS];
+    uint32_t branches[PARTS];
+} later;
+
+static void end_branch(const rgi_making *m, rgi_branch *branch) {
+    const rgi_branch *left = m->branches + branch->children;
+    branch->box = left[0].box;
+    rgi_wrap_grow(&branch->box, &left[1].box);
     find_costs(m, branch);
 }
 
-void rgi_branches_make(rgi_making *m) {
+static void make_branch(rgi_making *m, uint32_t number, const part *p, later *put_off) {
+    rgi_branch *branch = m->branches + number;
+    part left = {p->first, 0, p->depth + 1, {{0}}}, right = left;
+    branch->first = p->first;
+    branch->count = p->count;
+    branch->children = 0;
+    if (put_off && p->count <= put_off->most && put_off->count < PARTS) {
+        put_off->parts[put_off->count] = *p;
+        put_off->branches[put_off->count++] = number;
+        return;
+    }
+    if (leaf_holds(m, p->first, p->count)) {
+        rgi_wrap_empty(&branch->box);
+        for (uint32_t i = 0; i < p->count; i++) rgi_wrap_grow(&branch->box, &m->items[p->first + i]);
+        find_costs(m, branch);
+        return;
+    }
+    left.count = part_items_of(m, p, &left.centres, &right.centres);
+    right.first += left.count;
+    right.count = p->count - left.count;
+    branch->children = __atomic_fetch_add(&m->used, 2, __ATOMIC_RELAXED);
+    make_branch(m, branch->children, &left, put_off);
+    make_branch(m, branch->children + 1, &right, put_off);
+    if (!put_off) end_branch(m, branch);
+}
+
+static void make_later(void *context, uint64_t i) {
+    later *l = context;
+    make_branch(l->making, l->branches[i], &l->parts[i], NULL);
+}
+
+/* The branches above those that were put off. */
+static void end_branches(const later *l, uint32_t number) {
+    rgi_branch *branch = l->making->branches + number;
+    for (uint32_t i = 0; i < l->count; i++) {
+        if (l->branches[i] == number) return;
+    }
+    if (!branch->children) return;
+    end_branches(l, branch->children);
+    end_branches(l, branch->children + 1);
+    end_branch(l->making, branch);
+}
+
+static void make_item(const rgi_making *m, uint32_t i) {
+    rgi_item *it = &m->items[i];
+    rgi_wrap_empty(it);
+    for (int c = 0; c < 3; c++) {
+        const float *v = m->at[m->triangles[i][c]];
+        const rgi_wrap corner = {{v[0], v[1], v[2], 0, -v[0], -v[1], -v[2], 0}};
+        rgi_wrap_grow(it, &corner);
+    }
+    memcpy(&it->least[3], &i, sizeof i);
+}
+
+rg_result rgi_branches_make(rgi_making *m) {
     part all = {0, m->mesh->triangle_count, 0, {{0}}};
     rgi_wrap_empty(&all.centres);
-    for (uint32_t i = 0; i < m->mesh->triangle_count; i++) {
-        rgi_item *it = &m->items[i];
-        rgi_wrap_empty(it);
-        for (int c = 0; c < 3; c++) {
-            const float *v = m->at[m->triangles[i][c]];
-            const rgi_wrap corner = {{v[0], v[1], v[2], 0, -v[0], -v[1], -v[2], 0}};
-            rgi_wrap_grow(it, &corner);
-        }
-        memcpy(&it->least[3], &i, sizeof i);
-        grow_centres(&all.centres, it);
+    for (uint32_t i = 0; i < all.count; i++) {
+        make_item(m, i);
+        grow_centres(&all.centres, &m->items[i]);
     }
-    make_branch(m, m->branches, &all);
+    m->used = 1;
+    if (!m->pool || rgi_pool_workers(m->pool) == 1 || all.count < LEAST_SHARED) {
+        make_branch(m, 0, &all, NULL);
+        return RG_OK;
+    }
+    later *l;
+    rg_result result = rgi_allocate(m->mesh->memory, 1, sizeof *l, "building a mesh", &l);
+    if (result) return result;
+    l->making = m;
+    l->most = all.count / (PARTS / 4);
+    l->count = 0;
+    make_branch(m, 0, &all, l);
+    rgi_pool_run(m->pool, l->count, make_later, l);
+    end_branches(l, 0);
+    rgi_release(m->mesh->memory, l, 1, sizeof *l);
+    return RG_OK;
 }

@@ -4,6 +4,7 @@
 #define RAYGRID_LIB_MESH_BUILD_H
 
 #include "mesh.h"
+#include "pool.h"
 
 #include <math.h>
 
@@ -16,8 +17,7 @@ typedef struct rgi_wrap {
 typedef rgi_wrap rgi_item;
 
 /**
- * A binary node over `count` items from `first` on. A subtree over n items has room for 2 n - 1 nodes from its root
- * on: the left child follows at once, the right one where the left one's room ends.
+ * A binary node over `count` items from `first` on.
  *
  * cost[i - 1]: what it costs at the least to hang the subtree in i places of a wide node or fewer, relative to one
  * wide node tested for each ray (the surface area heuristic); places[i - 1]: how many of them the left child then
@@ -27,7 +27,7 @@ typedef rgi_wrap rgi_item;
 typedef struct rgi_branch {
     rgi_wrap box;
     uint32_t first, count;
-    uint32_t left; /* items of the left child; 0: has no children */
+    uint32_t children; /* the number of the left one, the right one follows; 0: has none and is a leaf */
     float cost[RGI_CHILDREN - 1];
     uint8_t places[RGI_CHILDREN - 1];
     uint8_t opened;
@@ -52,12 +52,15 @@ typedef struct rgi_making {
     uint32_t (*triangles)[3]; /* vertices by the caller's numbers */
     float (*at)[3];           /* vertices in the frame */
     rgi_item *items;
-    rgi_branch *branches; /* 2 a triangle */
+    rgi_branch *branches; /* room for 2 a triangle: what is not used is never touched */
+    uint32_t used;        /* atomic: branches */
     uint32_t fill;        /* triangles that a leaf holds as a rule */
+    bool fast;            /* built in a hurry */
+    rgi_pool *pool;       /* who helps */
 } rgi_making;
 
-/** Sets up items and branches and their costs. */
-void rgi_branches_make(rgi_making *making);
+/** Sets up items and branches and their costs. RG_OUT_OF_MEMORY. */
+rg_result rgi_branches_make(rgi_making *making);
 
 /** Makes lines, leaves and root out of the branches. */
 rg_result rgi_lines_make(const rgi_making *making);

@@ -30,20 +30,22 @@ static bool is_leaf(const rgi_branch *b) {
 }
 
 /* The subtrees that hang in `places` places. */
-static uint32_t gather(const rgi_branch *b, int places, const rgi_branch **out) {
+static uint32_t gather(const rgi_making *m, const rgi_branch *b, int places, const rgi_branch **out) {
     while (places > 1 && b->places[places - 1] == 0) places--;
     if (places == 1) {
         *out = b;
         return 1;
     }
     int of_left = b->places[places - 1];
-    uint32_t count = gather(b + 1, of_left, out);
-    return count + gather(b + 2 * (size_t)b->left, places - of_left, out + count);
+    const rgi_branch *left = m->branches + b->children;
+    uint32_t count = gather(m, left, of_left, out);
+    return count + gather(m, left + 1, places - of_left, out + count);
 }
 
-static uint32_t gather_children(const rgi_branch *b, const rgi_branch *out[RGI_CHILDREN]) {
-    uint32_t count = gather(b + 1, b->opened, out);
-    return count + gather(b + 2 * (size_t)b->left, RGI_CHILDREN - b->opened, out + count);
+static uint32_t gather_children(const rgi_making *m, const rgi_branch *b, const rgi_branch *out[RGI_CHILDREN]) {
+    const rgi_branch *left = m->branches + b->children;
+    uint32_t count = gather(m, left, b->opened, out);
+    return count + gather(m, left + 1, RGI_CHILDREN - b->opened, out + count);
 }
 
 static void count_lines(writer *w, const rgi_branch *b) {
@@ -52,7 +54,7 @@ static void count_lines(writer *w, const rgi_branch *b) {
         w->lines += LEAF_LINES;
         return;
     }
-    uint32_t count = gather_children(b, children);
+    uint32_t count = gather_children(w->making, b, children);
     w->lines += NODE_LINES;
     for (uint32_t i = 0; i < count; i++) count_lines(w, children[i]);
 }
@@ -206,7 +208,7 @@ static void write_lines(writer *w, const rgi_branch *b, child *out);
 /* Children in the order of the octants come one after the other, leaves at once behind their node. */
 static void write_children(writer *w, const rgi_branch *b, child children[RGI_CHILDREN], uint32_t *count) {
     const rgi_branch *branches[RGI_CHILDREN];
-    *count = gather_children(b, branches);
+    *count = gather_children(w->making, b, branches);
     for (int leaves = 1; leaves >= 0; leaves--) {
         for (uint32_t i = 0; i < *count; i++) {
             if (is_leaf(branches[i]) == (leaves == 1)) write_lines(w, branches[i], &children[i]);
