@@ -5,6 +5,7 @@
 #include "error.h"
 #include "lattice_cell.h"
 #include "mesh_build.h"
+#include "mesh_fit.h"
 #include "vec.h"
 #include "views.h"
 
@@ -19,22 +20,25 @@
 /* Triangles that a leaf of a connected mesh holds, as a rule, if it has not too many vertices. */
 enum { CONNECTED_FILL = 16 };
 
-static rg_result check_vertices(const rg_mesh_views *views, double *largest) {
-    *largest = 0;
+rg_result rgi_fail_index(uint64_t index, uint32_t triangle, int corner, uint32_t vertices) {
+    return rgi_fail(RG_INVALID_VALUE, "index %" PRIu64 " of triangle %u (corner %d) is not below the %u vertices",
+                    index, triangle, corner, vertices);
+}
+
+rg_result rgi_mesh_check(const rg_mesh_views *views, bool *exact) {
+    double largest = 0;
     for (uint64_t i = 0; i < views->vertex_count; i++) {
         double v[3];
         rgi_load3(&views->vertices, i, v);
-        double most = rgi_max_magnitude(v);
-        if (most <= RG_COORDINATE_MAX && v[0] == v[0] && v[1] == v[1]) {
-            *largest = rgi_max(*largest, most);
-            continue;
-        }
         for (int a = 0; a < 3; a++) {
             if (!(fabs(v[a]) <= RG_COORDINATE_MAX))
-                return rgi_fail(RG_INVALID_VALUE, "vertex %" PRIu64 " has %c = %g, which is not finite or beyond %g",
-                                i, "xyz"[a], v[a], RG_COORDINATE_MAX);
+                return rgi_fail(RG_INVALID_VALUE,
+                                "vertex %" PRIu64 " has %c = %g, which is not finite or beyond %g", i, "xyz"[a], v[a],
+                                RG_COORDINATE_MAX);
         }
+        largest = rgi_max(largest, rgi_max_magnitude(v));
     }
+    *exact = views->vertices.type == RG_F32 && largest >= EXACT_LEAST && largest <= EXACT_MOST;
     return RG_OK;
 }
 
@@ -47,9 +51,7 @@ static rg_result copy_triangles(rgi_making *making, const rg_mesh_views *views) 
         for (int c = 0; c < 3; c++) {
             double v[3];
             if (corner[c] >= mesh->vertex_count)
-                return rgi_fail(RG_INVALID_VALUE,
-                                "index %" PRIu64 " of triangle %u (corner %d) is not below the %u vertices",
-                                corner[c], i, c, mesh->vertex_count);
+                return rgi_fail_index(corner[c], i, c, mesh->vertex_count);
             making->triangles[i][c] = (uint32_t)corner[c];
             /* The mesh's box is that of the triangles: vertices that none uses must not make it larger. */
             rgi_load3(&views->vertices, corner[c], v);
@@ -64,7 +66,7 @@ static rg_result copy_triangles(rgi_making *making, const rg_mesh_views *views) 
  * itself; tests in double, with the ray's origin at most 2^7 radii away (lib/object.c), are rounded to 2^-45 of the
  * largest coordinate.
  */
-static void set_frame(rgi_mesh *mesh) {
+void rgi_mesh_set_frame(rgi_mesh *mesh) {
     double half[3], most = 0, largest = rgi_max(rgi_max_magnitude(mesh->lo), rgi_max_magnitude(mesh->hi));
     for (int a = 0; a < 3; a++) {
         double middle = 0.5 * mesh->lo[a] + 0.5 * mesh->hi[a];
@@ -105,9 +107,8 @@ static rg_result copy_vertices(rgi_making *making, const rg_mesh_views *views) {
 static rg_result make(rgi_making *making, const rg_mesh_views *views) {
     rgi_mesh *mesh = making->mesh;
     rgi_memory *memory = mesh->memory;
-    double largest;
-    rg_result result = check_vertices(views, &largest);
-    bool exact = views->vertices.type == RG_F32 && largest >= EXACT_LEAST && largest <= EXACT_MOST;
+    bool exact;
+    rg_result result = rgi_mesh_check(views, &exact);
     if (!result)
         result = rgi_allocate(memory, mesh->triangle_count, sizeof *making->triangles, "building a mesh",
                               &making->triangles);
@@ -126,7 +127,7 @@ static rg_result make(rgi_making *making, const rg_mesh_views *views) {
     /* A connected mesh has half as many vertices as triangles, a soup three times as many. */
     mesh->soup = mesh->vertex_count > mesh->triangle_count;
     making->fill = mesh->soup ? RGI_SOUP_LEAF : CONNECTED_FILL;
-    set_frame(mesh);
+    rgi_mesh_set_frame(mesh);
     copy_vertices(making, views);
     result = rgi_branches_make(making);
     if (!result) result = rgi_lines_make(making);
@@ -137,10 +138,17 @@ static rg_result make(rgi_making *making, const rg_mesh_views *views) {
     return result;
 }
 
-static rg_result fill(rgi_mesh *mesh, const rg_mesh_views *views) {
-    rgi_making making = {mesh, NULL, NULL, NULL, NULL, 0};
+static rg_result fill(rgi_mesh *mesh, const rg_mesh_views *views, const rgi_mesh_making *how) {
+    rgi_making making;
     rgi_memory *memory = mesh->memory;
-    rg_result result = make(&making, views);
+    rg_result result = RG_OK;
+    memset(&making, 0, sizeof making);
+    making.mesh = mesh;
+    making.fast = how && how->fast;
+    if (how && (how->workers > 1 || how->parallel_for))
+        result = rgi_pool_create(memory, how->workers, how->parallel_for, how->parallel_for_user, &making.pool);
+    if (!result) result = make(&making, views);
+    rgi_pool_destroy(making.pool);
     rgi_release(memory, making.branches, 2 * (uint64_t)mesh->triangle_count, sizeof *making.branches);
     rgi_release(memory, making.items, mesh->triangle_count, sizeof *making.items);
     rgi_release(memory, making.at, mesh->vertex_count, sizeof *making.at);
@@ -148,7 +156,8 @@ static rg_result fill(rgi_mesh *mesh, const rg_mesh_views *views) {
     return result;
 }
 
-rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, rgi_mesh **out) {
+rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, const rgi_mesh_making *how,
+                          rgi_mesh **out) {
     rgi_mesh *mesh;
     rg_result result = rgi_allocate(memory, 1, sizeof *mesh, "a mesh", &mesh);
     if (result) return result;
@@ -157,7 +166,8 @@ rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, rgi_me
     mesh->kernels = rgi_kernels_best();
     mesh->vertex_count = (uint32_t)views->vertex_count;
     mesh->triangle_count = (uint32_t)views->triangle_count;
-    result = fill(mesh, views);
+    result = fill(mesh, views, how);
+    if (!result) mesh->cost = rgi_mesh_fit(mesh);
     if (result) {
         rgi_mesh_destroy(mesh);
         return result;

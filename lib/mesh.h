@@ -65,6 +65,7 @@ typedef struct rgi_mesh {
     float pad;                       /* around boxes, in the frame */
     float rounding;                  /* what tests in double may be wrong by, in the frame */
     rgi_middle middle;
+    double cost; /* of rays in the tree as it was built: see rgi_mesh_fit */
 } rgi_mesh;
 
 /** The caller's number of a triangle of a leaf. */
@@ -77,8 +78,22 @@ static inline void *rgi_mesh_at(const rgi_mesh *mesh, rgi_mesh_ref ref) {
     return mesh->lines + (size_t)(ref & ~RGI_MESH_LEAF) * RGI_MESH_LINE;
 }
 
-/** Copies the triangles of checked views and builds the tree. On failure all is given back. */
-rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, rgi_mesh **mesh);
+/** How a mesh is made. */
+typedef struct rgi_mesh_making {
+    bool fast;
+    uint32_t workers; /* 0: one */
+    rg_parallel_for parallel_for;
+    void *parallel_for_user;
+} rgi_mesh_making;
+
+/** Copies the triangles of views of checked types and builds the tree; how NULL: as well as can be, alone. On failure
+ * all is given back. */
+rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, const rgi_mesh_making *how,
+                          rgi_mesh **mesh);
+
+/** The same for new vertices of a mesh that stays as it is: its tree is taken over, unless it has worn out. */
+rg_result rgi_mesh_deform(rgi_memory *memory, const rgi_mesh *old, const rgi_mesh_making *how,
+                          const rg_mesh_views *views, rgi_mesh **mesh);
 void rgi_mesh_destroy(rgi_mesh *mesh);
 
 bool rgi_mesh_intersect(const rgi_mesh *mesh, const rgi_local_ray *ray, rgi_candidate *candidate);

@@ -59,6 +59,18 @@ typedef struct rgi_making {
     rgi_pool *pool;       /* who helps */
 } rgi_making;
 
+/** RG_INVALID_VALUE if a vertex is not finite or too large; *exact: whether the frame can hold them as they are. */
+rg_result rgi_mesh_check(const rg_mesh_views *views, bool *exact);
+
+/** Sets origin, scale, pads and middle of the frame for the box of the mesh. */
+void rgi_mesh_set_frame(rgi_mesh *mesh);
+
+/** The length of the longest side of a leaf's triangles along an axis, and a little more. */
+float rgi_leaf_longest(const rgi_mesh_leaf *leaf);
+
+/** Fails with RG_INVALID_VALUE: an index is too large. */
+rg_result rgi_fail_index(uint64_t index, uint32_t triangle, int corner, uint32_t vertices);
+
 /** Sets up items and branches and their costs. RG_OUT_OF_MEMORY. */
 rg_result rgi_branches_make(rgi_making *making);
 

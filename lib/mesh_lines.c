@@ -69,7 +69,7 @@ static uint8_t lane_of(rgi_mesh_leaf *leaf, uint32_t numbers[RGI_LEAF], uint32_t
     return (uint8_t)leaf->vertices++;
 }
 
-static float longest_side(const rgi_mesh_leaf *leaf) {
+float rgi_leaf_longest(const rgi_mesh_leaf *leaf) {
     float longest = 0;
     for (uint32_t t = 0; t < leaf->triangles; t++) {
         for (int a = 0; a < 3; a++) {
@@ -102,7 +102,7 @@ static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *
     for (int a = 0; a < 3; a++) {
         for (int k = 0; k < RGI_LEAF; k++) leaf->at[a][k] = m->at[numbers[k]][a];
     }
-    leaf->longest = longest_side(leaf);
+    leaf->longest = rgi_leaf_longest(leaf);
 }
 
 /* Lanes that hold no triangle are NaN, which no comparison lets pass. */

@@ -8,6 +8,7 @@
 #include "views.h"
 
 #include <inttypes.h>
+#include <stddef.h>
 #include <string.h>
 
 /* Kinds that the Meson option `shapes` leaves out are refused when they are to be made, so what stands in for the
@@ -20,7 +21,8 @@
 #define rgi_capsule_intersect(capsule, ray, candidate) false
 #endif
 #if defined(RGI_NO_MESH)
-#define rgi_mesh_create(memory, views, mesh) RG_OK
+#define rgi_mesh_create(memory, views, how, mesh) RG_OK
+#define rgi_mesh_deform(memory, old, how, views, mesh) RG_OK
 #define rgi_mesh_destroy(mesh) ((void)0)
 #define rgi_mesh_intersect(mesh, ray, candidate) false
 #endif
@@ -182,9 +184,10 @@ rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], cons
 
 /* ----------------------------------------------------------------------------------------------- creation */
 
-static const rg_shape_config default_config = {sizeof(rg_shape_config), {NULL, NULL, NULL}};
+static const rg_shape_config default_config = {sizeof(rg_shape_config), {NULL, NULL, NULL}, 0, 0, NULL, NULL};
 enum {
-    CONFIG_LEAST = sizeof(rg_shape_config),
+    MAX_WORKERS = 1024,
+    CONFIG_LEAST = offsetof(rg_shape_config, quality),
     MESH_LEAST = sizeof(rg_mesh_views),
     USER_LEAST = sizeof(rg_user_shape),
     REPORT_LEAST = sizeof(rg_shape_report)
@@ -324,16 +327,38 @@ static rg_result check_mesh(const rg_mesh_views *v) {
     return RG_OK;
 }
 
-rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_mesh_views *given, rg_shape **out) {
+/* How the config says that a mesh is to be made. */
+static rg_result read_making(const rg_shape_config *given, rgi_mesh_making *how) {
+    rg_shape_config config;
+    rg_result result = rgi_struct_read(&config, sizeof config, CONFIG_LEAST, given, "rg_shape_config");
+    if (result) return result;
+    if (!given) config = default_config;
+    if (config.quality != RG_MESH_BEST && config.quality != RG_MESH_FAST)
+        return rgi_fail(RG_INVALID_ARGUMENT, "quality is %d, which is none", (int)config.quality);
+    if (config.workers > MAX_WORKERS)
+        return rgi_fail(RG_INVALID_VALUE, "workers is %u, above %d", config.workers, MAX_WORKERS);
+    how->fast = config.quality == RG_MESH_FAST;
+    how->workers = config.workers ? config.workers : 1;
+    how->parallel_for = config.parallel_for;
+    how->parallel_for_user = config.parallel_for_user;
+    return RG_OK;
+}
+
+/* A mesh; `old`: the one whose triangles get new vertices, or NULL. */
+static rg_result create_mesh(const rg_shape_config *config, const rgi_mesh *old, const rg_mesh_views *given,
+                             rg_shape **out) {
     rg_mesh_views views;
+    rgi_mesh_making how;
     rg_shape *shape = NULL;
-    if (left_out(RG_SHAPE_MESH)) return refuse(RG_SHAPE_MESH);
     if (!given) return rgi_fail(RG_INVALID_ARGUMENT, "views is NULL");
     rg_result result = rgi_struct_read(&views, sizeof views, MESH_LEAST, given, "rg_mesh_views");
     if (!result) result = check_mesh(&views);
     if (!result) result = out ? RG_OK : rgi_fail(RG_INVALID_ARGUMENT, "shape is NULL: nowhere to return it");
+    if (!result) result = read_making(config, &how);
     if (!result) result = shape_new(config, RG_SHAPE_MESH, &shape);
-    if (!result) result = rgi_mesh_create(&shape->memory, &views, &shape->of.mesh);
+    if (!result)
+        result = old ? rgi_mesh_deform(&shape->memory, old, &how, &views, &shape->of.mesh)
+                     : rgi_mesh_create(&shape->memory, &views, &how, &shape->of.mesh);
     if (result) {
         rg_shape_release(&shape);
         return result;
@@ -342,6 +367,19 @@ rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_mesh_view
     rgi_copy(shape->of.mesh->hi, shape->hi);
     *out = shape;
     return RG_OK;
+}
+
+rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_mesh_views *views, rg_shape **out) {
+    if (left_out(RG_SHAPE_MESH)) return refuse(RG_SHAPE_MESH);
+    return create_mesh(config, NULL, views, out);
+}
+
+rg_result rg_shape_create_deformed(const rg_shape_config *config, const rg_shape *mesh, const rg_mesh_views *views,
+                                   rg_shape **out) {
+    if (left_out(RG_SHAPE_MESH)) return refuse(RG_SHAPE_MESH);
+    if (!mesh || mesh->kind != RG_SHAPE_MESH)
+        return rgi_fail(RG_INVALID_ARGUMENT, mesh ? "mesh is another shape" : "mesh is NULL");
+    return create_mesh(config, mesh->of.mesh, views, out);
 }
 
 rg_result rg_shape_create_user(const rg_shape_config *config, const rg_user_shape *given, rg_shape **out) {

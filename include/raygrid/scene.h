@@ -177,6 +177,15 @@ RG_API rg_result rg_scene_remove(rg_scene *scene, rg_object object);
  */
 RG_API rg_result rg_scene_remove_many(rg_scene *scene, const rg_input *objects, uint64_t count);
 
+/**
+ * Gives every object of this scene that has the shape `from` the shape `to`: as for a mesh that has changed its form,
+ * see rg_shape_create_deformed. Their ids, poses and masks stay. All at once, or on any error none: each ray sees all
+ * with the one or all with the other. Objects of other scenes keep `from`.
+ * Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE (an object with `to` would reach too far; the message names it),
+ * RG_OUT_OF_MEMORY, RG_BUSY. Cost: looks at each object of the scene, some nanoseconds each; moves those concerned.
+ */
+RG_API rg_result rg_scene_replace_shape(rg_scene *scene, rg_shape *from, rg_shape *to);
+
 /** What is known of an object. Set `size` before the call; the library fills what both sides know. */
 typedef struct rg_object_report {
     size_t size;

@@ -44,9 +44,13 @@ FIELD(rg_output3, type, 32);
 
 /* shape.h */
 
-SIZE(rg_shape_config, 32);
+SIZE(rg_shape_config, 56);
 FIELD(rg_shape_config, size, 0);
 FIELD(rg_shape_config, allocator, 8);
+FIELD(rg_shape_config, quality, 32);
+FIELD(rg_shape_config, workers, 36);
+FIELD(rg_shape_config, parallel_for, 40);
+FIELD(rg_shape_config, parallel_for_user, 48);
 
 SIZE(rg_mesh_views, 104);
 FIELD(rg_mesh_views, size, 0);
