@@ -88,11 +88,14 @@ typedef struct refill {
     const rg_mesh_views *views;
 } refill;
 
-static rg_result corner_of(const refill *r, uint32_t triangle, int c, uint32_t *vertex) {
-    uint64_t corner[3] = {3ull * triangle, 3ull * triangle + 1, 3ull * triangle + 2};
-    if (r->views->indices.x) rgi_load3_integer(&r->views->indices, triangle, corner);
-    *vertex = (uint32_t)corner[c];
-    return corner[c] < r->mesh->vertex_count ? RG_OK : rgi_fail_index(corner[c], triangle, c, r->mesh->vertex_count);
+static rg_result corners_of(const refill *r, uint32_t triangle, uint32_t corners[3]) {
+    uint64_t given[3] = {3ull * triangle, 3ull * triangle + 1, 3ull * triangle + 2};
+    if (r->views->indices.x) rgi_load3_integer(&r->views->indices, triangle, given);
+    for (int c = 0; c < 3; c++) {
+        if (given[c] >= r->mesh->vertex_count) return rgi_fail_index(given[c], triangle, c, r->mesh->vertex_count);
+        corners[c] = (uint32_t)given[c];
+    }
+    return RG_OK;
 }
 
 /* A vertex, into the mesh's box and the frame. */
@@ -108,10 +111,11 @@ static rg_result refill_leaf(const refill *r, rgi_mesh_leaf *leaf) {
     uint32_t numbers[RGI_LEAF];
     memset(numbers, 0xFF, sizeof numbers); /* no vertex has that number */
     for (uint32_t t = 0; t < leaf->triangles; t++) {
+        uint32_t corners[3];
+        rg_result result = corners_of(r, leaf->primitive[t], corners);
+        if (result) return result;
         for (int c = 0; c < 3; c++) {
-            uint32_t vertex, lane = leaf->corner[c][t];
-            rg_result result = corner_of(r, leaf->primitive[t], c, &vertex);
-            if (result) return result;
+            uint32_t vertex = corners[c], lane = leaf->corner[c][t];
             if (numbers[lane] == vertex) continue;
             if (numbers[lane] != UINT32_MAX)
                 return rgi_fail(RG_INVALID_VALUE, "triangle %u does not have the corners that it was made with",
@@ -129,12 +133,10 @@ static rg_result refill_leaf(const refill *r, rgi_mesh_leaf *leaf) {
 
 static rg_result refill_soup(const refill *r, rgi_soup_leaf *leaf) {
     for (uint32_t t = 0; t < RGI_SOUP_LEAF && leaf->primitive[t] != RGI_NO_TRIANGLE; t++) {
-        for (int c = 0; c < 3; c++) {
-            uint32_t vertex;
-            rg_result result = corner_of(r, leaf->primitive[t], c, &vertex);
-            if (result) return result;
-            load_vertex(r, vertex, &leaf->at[c][0][t], RGI_SOUP_LEAF);
-        }
+        uint32_t corners[3];
+        rg_result result = corners_of(r, leaf->primitive[t], corners);
+        if (result) return result;
+        for (int c = 0; c < 3; c++) load_vertex(r, corners[c], &leaf->at[c][0][t], RGI_SOUP_LEAF);
     }
     return RG_OK;
 }
@@ -155,9 +157,9 @@ static rg_result refill_vertices(const refill *r) {
     rgi_mesh *mesh = r->mesh;
     for (uint32_t i = 0; i < mesh->vertex_count; i++) rgi_load3(&r->views->vertices, i, mesh->vertices[i]);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        rg_result result = corners_of(r, t, mesh->corners[t]);
+        if (result) return result;
         for (int c = 0; c < 3; c++) {
-            rg_result result = corner_of(r, t, c, &mesh->corners[t][c]);
-            if (result) return result;
             const double *v = mesh->vertices[mesh->corners[t][c]];
             rgi_grow(mesh->lo, mesh->hi, v, v);
         }
