@@ -14,7 +14,8 @@ static const double FILLED = 0.05; /* part of the volume, overlaps counted twice
 
 enum { CLUSTERS = 64, BIG_ONES = 10, MESH_LEVELS = 4, FORMS = 16 };
 
-const char *const BENCH_SCENES[] = {"uniform", "mixed", "stadium", "boxes", "capsules", "mixture", "meshes", "noisy", "soup", NULL};
+const char *const BENCH_SCENES[] = {"uniform", "mixed",  "stadium", "boxes", "capsules",
+                                    "mixture", "meshes", "noisy",   "soup",  NULL};
 
 static double rounded(double x) {
     return (double)(float)x;

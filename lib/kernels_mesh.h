@@ -24,8 +24,8 @@ RGI_INLINE uint32_t meet_triangles(const rgi_mesh_leaf *leaf, const rgi_triangle
     return in & ((1u << leaf->triangles) - 1);
 }
 
-/* The same for the leaf of a soup. The margin is of each triangle's own places, S being the sum of their sizes: e S of
- * the errors, 2^-22 S^2 of the rounding. */
+/* The same for the leaf of a soup. The margin is of each triangle's own places, S being the sum of their sizes: e S
+ * of the errors, 2^-22 S^2 of the rounding. */
 RGI_INLINE uint32_t meet_soup(const rgi_soup_leaf *leaf, const rgi_triangle_filter *r) {
     f8 x[3], y[3], size = f8_set(0), zero = f8_set(0);
     for (int c = 0; c < 3; c++) {

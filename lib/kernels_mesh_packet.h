@@ -34,8 +34,8 @@ static void to_local(const rgi_bundle *b, const rgi_object *object, const rgi_li
     }
 }
 
-/* rgi_beam_into_mesh for all lanes. Rays that come from far away are brought near even where that shows that they pass
- * by. */
+/* rgi_beam_into_mesh for all lanes. Rays that come from far away are brought near even where that shows that they
+ * pass by. */
 static void to_mesh(const rgi_mesh *mesh, rgi_mesh_packet *m) {
     rgi_packet *p = &m->rays;
     const double radius = mesh->middle.radius, scale = mesh->scale;

@@ -32,9 +32,8 @@ rg_result rgi_mesh_check(const rg_mesh_views *views, bool *exact) {
         rgi_load3(&views->vertices, i, v);
         for (int a = 0; a < 3; a++) {
             if (!(fabs(v[a]) <= RG_COORDINATE_MAX))
-                return rgi_fail(RG_INVALID_VALUE,
-                                "vertex %" PRIu64 " has %c = %g, which is not finite or beyond %g", i, "xyz"[a], v[a],
-                                RG_COORDINATE_MAX);
+                return rgi_fail(RG_INVALID_VALUE, "vertex %" PRIu64 " has %c = %g, which is not finite or beyond %g",
+                                i, "xyz"[a], v[a], RG_COORDINATE_MAX);
         }
         largest = rgi_max(largest, rgi_max_magnitude(v));
     }
@@ -50,8 +49,7 @@ static rg_result copy_triangles(rgi_making *making, const rg_mesh_views *views) 
         if (views->indices.x) rgi_load3_integer(&views->indices, i, corner);
         for (int c = 0; c < 3; c++) {
             double v[3];
-            if (corner[c] >= mesh->vertex_count)
-                return rgi_fail_index(corner[c], i, c, mesh->vertex_count);
+            if (corner[c] >= mesh->vertex_count) return rgi_fail_index(corner[c], i, c, mesh->vertex_count);
             making->triangles[i][c] = (uint32_t)corner[c];
             /* The mesh's box is that of the triangles: vertices that none uses must not make it larger. */
             rgi_load3(&views->vertices, corner[c], v);

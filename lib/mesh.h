@@ -57,13 +57,13 @@ typedef struct rgi_mesh {
     uint32_t line_count;
     rgi_mesh_ref root;
     uint32_t triangle_count, vertex_count;
-    bool soup;                       /* leaves are rgi_soup_leaf */
-    double (*vertices)[3];           /* in double; NULL where the frame's are exact */
-    uint32_t (*corners)[3];          /* of each triangle, where the vertices are kept */
-    double lo[3], hi[3];             /* of the triangles: vertices that none uses do not count */
-    double origin[3], scale;         /* of the frame; a power of two */
-    float pad;                       /* around boxes, in the frame */
-    float rounding;                  /* what tests in double may be wrong by, in the frame */
+    bool soup;               /* leaves are rgi_soup_leaf */
+    double (*vertices)[3];   /* in double; NULL where the frame's are exact */
+    uint32_t (*corners)[3];  /* of each triangle, where the vertices are kept */
+    double lo[3], hi[3];     /* of the triangles: vertices that none uses do not count */
+    double origin[3], scale; /* of the frame; a power of two */
+    float pad;               /* around boxes, in the frame */
+    float rounding;          /* what tests in double may be wrong by, in the frame */
     rgi_middle middle;
     double cost; /* of rays in the tree as it was built: see rgi_mesh_fit */
 } rgi_mesh;

@@ -38,8 +38,7 @@ void rgi_mesh_packet_describe(const rgi_mesh_packet *m, uint32_t ray, const void
     (void)rgi_triangle_meets(&t, m->mesh, leaf, triangle, candidate);
 }
 
-bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle,
-                          double *at) {
+bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle, double *at) {
     rgi_triangle_ray t;
     rgi_local_ray local;
     rgi_candidate c;

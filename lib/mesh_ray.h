@@ -32,7 +32,7 @@ typedef struct rgi_mesh_packet {
     uint32_t along[3];                           /* bits of the rays whose longest component is along an axis */
     uint32_t sides;                              /* that count */
     uint32_t found;                              /* bits of the rays that hit something */
-    const void *leaf[RGI_PACKET];       /* what they hit */
+    const void *leaf[RGI_PACKET];                /* what they hit */
     uint32_t triangle[RGI_PACKET];
 } rgi_mesh_packet;
 
@@ -56,11 +56,11 @@ static inline float rgi_place_error(const rgi_mesh *mesh, const float origin[3])
     return 0x1p-20f * most + mesh->rounding;
 }
 
-/** A triangle that a ray of a packet may meet: all of *candidate; whether it does, on a side that counts, and where. */
+/** A triangle that a ray of a packet may meet: all of *candidate; whether it does, on a side that counts, and where.
+ */
 void rgi_mesh_packet_describe(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle,
                               rgi_candidate *candidate);
-bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle,
-                          double *t);
+bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle, double *t);
 
 /** Begins the way of a ray; false if it passes the mesh. The local ray must live as long. */
 bool rgi_mesh_begin(rgi_mesh_ray *m, const rgi_mesh *mesh, const rgi_local_ray *ray);

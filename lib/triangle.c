@@ -73,8 +73,8 @@ static bool meets(const rgi_triangle_ray *t, double v[3][3], double *root, uint3
     return true;
 }
 
-uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf,
-                            uint32_t triangle, rgi_candidate *candidate) {
+uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf, uint32_t triangle,
+                            rgi_candidate *candidate) {
     double v[3][3], root;
     uint32_t side;
     rgi_triangle_corners(mesh, leaf, triangle, v);

@@ -25,7 +25,8 @@ static inline void rgi_triangle_corners(const rgi_mesh *mesh, const void *leaf, 
         for (int c = 0; c < 3; c++) rgi_copy(mesh->vertices[corners[c]], v[c]);
     } else if (mesh->soup) {
         const rgi_soup_leaf *l = leaf;
-        for (int c = 0; c < 3; c++) rgi_set(v[c], l->at[c][0][triangle], l->at[c][1][triangle], l->at[c][2][triangle]);
+        for (int c = 0; c < 3; c++)
+            rgi_set(v[c], l->at[c][0][triangle], l->at[c][1][triangle], l->at[c][2][triangle]);
     } else {
         const rgi_mesh_leaf *l = leaf;
         for (int c = 0; c < 3; c++) {
@@ -52,7 +53,7 @@ void rgi_triangle_ray_init(rgi_triangle_ray *t, const rgi_local_ray *ray);
 bool rgi_triangles_test(rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf, uint32_t triangles);
 
 /** Returns the side of a triangle that the ray meets, wherever that is, and fills all of *candidate; 0: none. */
-uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf,
-                            uint32_t triangle, rgi_candidate *candidate);
+uint32_t rgi_triangle_meets(const rgi_triangle_ray *t, const rgi_mesh *mesh, const void *leaf, uint32_t triangle,
+                            rgi_candidate *candidate);
 
 #endif

@@ -114,12 +114,12 @@ RG_API rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_me
 
 /**
  * A mesh of the triangles of another one with new vertices, for meshes that change their form: made much faster than
- * by rg_shape_create_mesh. `views` as there, with the counts and indices that `mesh` was made with. `mesh` stays as it
- * is, and may be released afterwards; rg_scene_replace_shape puts the new one in its place. What finds the triangles is
- * taken over and fitted, unless triangles have moved so much against each other, in this and earlier such steps, that
- * rays would cost half as much again: then it is made anew, as config says. No answer depends on which of the two.
- * Errors: as rg_shape_create_mesh; RG_INVALID_ARGUMENT: `mesh` is no mesh; RG_INVALID_VALUE: other counts, or indices by
- * which triangles share vertices in another way. Cost: linear.
+ * by rg_shape_create_mesh. `views` as there, with the counts and indices that `mesh` was made with. `mesh` stays as
+ * it is, and may be released afterwards; rg_scene_replace_shape puts the new one in its place. What finds the
+ * triangles is taken over and fitted, unless triangles have moved so much against each other, in this and earlier
+ * such steps, that rays would cost half as much again: then it is made anew, as config says. No answer depends on
+ * which of the two. Errors: as rg_shape_create_mesh; RG_INVALID_ARGUMENT: `mesh` is no mesh; RG_INVALID_VALUE: other
+ * counts, or indices by which triangles share vertices in another way. Cost: linear.
  */
 RG_API rg_result rg_shape_create_deformed(const rg_shape_config *config, const rg_shape *mesh,
                                           const rg_mesh_views *views, rg_shape **shape);
