@@ -154,7 +154,7 @@ RGI_INLINE bool step_inside(rgi_beam *b) {
     b->inside = false;
     return b->leave(b);
 #else
-    return false;
+    return b->leave(b);
 #endif
 }
 

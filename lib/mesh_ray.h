@@ -68,4 +68,14 @@ bool rgi_mesh_begin(rgi_mesh_ray *m, const rgi_mesh *mesh, const rgi_local_ray *
 /** Tests triangles of a leaf, named by bits. Returns true if nothing more is wanted. */
 bool rgi_mesh_test(rgi_mesh_ray *m, const void *leaf, uint32_t triangles);
 
+/* Builds without meshes never come here. */
+#if defined(RGI_NO_MESH)
+#define rgi_mesh_begin(m, mesh, ray) ((void)(m), (void)(mesh), (void)(ray), false)
+#define rgi_mesh_packet_describe(m, ray, leaf, triangle, candidate)                                                  \
+    ((void)(m), (void)memset(candidate, 0, sizeof *(candidate)))
+#define rgi_triangle_ray_init(t, ray) ((void)(t), (void)(ray))
+#define rgi_triangle_meets(t, mesh, leaf, triangle, candidate)                                                       \
+    ((void)(t), (void)(leaf), (void)(triangle), (void)memset(candidate, 0, sizeof *(candidate)))
+#endif
+
 #endif
