@@ -6,6 +6,7 @@
 #include "lattice_cell.h"
 #include "mesh_build.h"
 #include "mesh_fit.h"
+#include "triangle.h"
 #include "vec.h"
 #include "views.h"
 
@@ -183,8 +184,35 @@ void rgi_mesh_destroy(rgi_mesh *mesh) {
     rgi_release(memory, mesh, 1, sizeof *mesh);
 }
 
+uint64_t rgi_mesh_read_vertices(const rgi_mesh *mesh) {
+    return mesh->vertices ? mesh->vertex_count : 3 * (uint64_t)mesh->triangle_count;
+}
+
+/* The corners of all triangles in the leaves below. */
+static void read_leaves(const rgi_mesh *mesh, rgi_mesh_ref ref, double (*vertices)[3]) {
+    const void *at = rgi_mesh_at(mesh, ref);
+    if (ref & RGI_MESH_LEAF) {
+        uint32_t count = mesh->soup ? RGI_SOUP_LEAF : ((const rgi_mesh_leaf *)at)->triangles;
+        for (uint32_t t = 0; t < count; t++) {
+            uint32_t number = rgi_mesh_primitive(mesh, at, t);
+            if (number != RGI_NO_TRIANGLE) rgi_triangle_corners(mesh, at, t, &vertices[3 * (size_t)number]);
+        }
+        return;
+    }
+    const rgi_mesh_node *node = at;
+    for (int o = 0; o < RGI_CHILDREN; o++) {
+        if (node->lo[0][o] <= node->hi[0][o]) read_leaves(mesh, node->child[o], vertices);
+    }
+}
+
 void rgi_mesh_read(const rgi_mesh *mesh, double (*vertices)[3], uint32_t (*triangles)[3]) {
-    memcpy(vertices, mesh->vertices, mesh->vertex_count * sizeof *vertices);
-    for (uint32_t i = 0; i < mesh->triangle_count; i++)
-        memcpy(triangles[mesh->primitives[i]], mesh->triangles[i], sizeof *triangles);
+    if (mesh->vertices) {
+        memcpy(vertices, mesh->vertices, mesh->vertex_count * sizeof *vertices);
+        memcpy(triangles, mesh->corners, mesh->triangle_count * sizeof *triangles);
+        return;
+    }
+    read_leaves(mesh, mesh->root, vertices);
+    for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+        for (uint32_t c = 0; c < 3; c++) triangles[i][c] = 3 * i + c;
+    }
 }

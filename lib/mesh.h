@@ -96,6 +96,13 @@ rg_result rgi_mesh_deform(rgi_memory *memory, const rgi_mesh *old, const rgi_mes
                           const rg_mesh_views *views, rgi_mesh **mesh);
 void rgi_mesh_destroy(rgi_mesh *mesh);
 
+/**
+ * Copies the mesh: its vertices, rgi_mesh_read_vertices of them, and the vertices of all triangles in the caller's
+ * order. Of a mesh that keeps no vertices each triangle gets three of its own: what rays meet is the same.
+ */
+void rgi_mesh_read(const rgi_mesh *mesh, double (*vertices)[3], uint32_t (*triangles)[3]);
+uint64_t rgi_mesh_read_vertices(const rgi_mesh *mesh);
+
 bool rgi_mesh_intersect(const rgi_mesh *mesh, const rgi_local_ray *ray, rgi_candidate *candidate);
 
 #endif
