@@ -211,6 +211,8 @@ void rgi_mesh_read(const rgi_mesh *mesh, double (*vertices)[3], uint32_t (*trian
         memcpy(triangles, mesh->corners, mesh->triangle_count * sizeof *triangles);
         return;
     }
+    /* Triangles without area are in no leaf. */
+    memset(vertices, 0, 3 * (size_t)mesh->triangle_count * sizeof *vertices);
     read_leaves(mesh, mesh->root, vertices);
     for (uint32_t i = 0; i < mesh->triangle_count; i++) {
         for (uint32_t c = 0; c < 3; c++) triangles[i][c] = 3 * i + c;

@@ -77,7 +77,7 @@ static void mesh_free(mesh_data *data) {
 #else
 static rg_result mesh_copy(rgi_memory *memory, const rgi_mesh *mesh, mesh_data *data) {
     data->memory = memory;
-    data->vertex_count = mesh->vertex_count;
+    data->vertex_count = (uint32_t)rgi_mesh_read_vertices(mesh);
     data->triangle_count = mesh->triangle_count;
     rg_result result =
         rgi_allocate(memory, data->vertex_count, sizeof *data->vertices, "writing a mesh", &data->vertices);
