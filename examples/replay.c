@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_RAYS = 64, CALLS = RG_CALL_GRID_REBUILD + 1 };
+enum { MOST_RAYS = 64, CALLS = RG_CALL_REPLACE_SHAPE + 1 };
 
 typedef struct options {
     const char *file, *save;

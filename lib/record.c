@@ -35,6 +35,7 @@ const char *rg_call_name(rg_call call) {
         "rg_grid_destroy",
         "rg_grid_configure",
         "rg_grid_rebuild",
+        "rg_scene_replace_shape",
     };
     return call >= 0 && call < (rg_call)(sizeof names / sizeof *names) ? names[call] : "unknown";
 }
@@ -127,7 +128,7 @@ static rgi_writer *record_of(rg_scene *scene, rg_call call, uint64_t words) {
     return &recorder->writer;
 }
 
-/* Writes the shape of an object that was inserted if it is a new one. */
+/* Writes the shape that an object has got, if it is a new one. */
 static bool write_shape(rg_scene *scene, rg_object object, uint32_t *number) {
     rgi_recorder *recorder = scene->recorder;
     rg_shape *shape = rgi_scene_object(scene, RG_OBJECT_SLOT(object))->shape;
@@ -240,5 +241,16 @@ void rgi_record_remove_many(rg_scene *scene, const rg_input *objects, uint64_t c
     rgi_writer *w = record_of(scene, RG_CALL_REMOVE_MANY, count);
     if (!w) return;
     for (uint64_t i = 0; i < count; i++) rgi_put(w, rgi_load_integer(objects, i, 0));
+    finish(scene);
+}
+
+void rgi_record_replace(rg_scene *scene, rg_shape *from, rg_object object, uint64_t count) {
+    uint32_t old, new;
+    /* An object has had it, so it was written, and has its number still. */
+    if (!write_shape(scene, object, &new) || !rgi_shape_numbers_find(&scene->recorder->shapes, from, &old)) return;
+    rgi_writer *w = record_of(scene, RG_CALL_REPLACE_SHAPE, 3);
+    rgi_put(w, object);
+    rgi_put(w, count);
+    rgi_put_pair(w, old, new);
     finish(scene);
 }

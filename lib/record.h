@@ -22,6 +22,9 @@ void rgi_record_remove_many(rg_scene *scene, const rg_input *objects, uint64_t c
 /** RG_CALL_GRID_CREATE, _DESTROY, _CONFIGURE, _REBUILD; `config` for the first and third. */
 void rgi_record_grid(rg_scene *scene, rg_call call, rg_grid grid, const rg_grid_config *config);
 
+/** `from` in all `count` objects that had it, `object` the first of them. */
+void rgi_record_replace(rg_scene *scene, rg_shape *from, rg_object object, uint64_t count);
+
 /** In an entry point: `if (!result) RGI_RECORD(insert, scene, id, pose);` */
 #define RGI_RECORD(what, scene, ...)                                                                                 \
     do {                                                                                                             \

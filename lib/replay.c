@@ -4,10 +4,14 @@
  * the record's own words. What was written in record.c is read here.
  */
 #include "error.h"
+#include "scene_shapes.h"
 #include "snapshot.h"
 #include "struct_size.h"
 
 #include <inttypes.h>
+
+/* Calls that version 1 of the format knows have lower numbers. */
+enum { CALLS_OF_VERSION_1 = RG_CALL_REPLACE_SHAPE };
 
 enum { REPORT_LEAST = sizeof(rg_replay_report) };
 
@@ -193,6 +197,22 @@ static rg_result play_remove_many(rg_replay *replay, const rgi_stream_record *re
     return rg_scene_remove_many(replay->loader.scene, &objects, r->objects);
 }
 
+/* The public call would not tell whom it was about. */
+static rg_result play_replace(rg_replay *replay, const rgi_stream_record *record, rg_replay_report *r) {
+    rg_shape *from, *to;
+    rgi_replaced what;
+    rg_result result = rgi_stream_demand(record, 3);
+    if (result) return result;
+    r->object = rgi_word(record, 0);
+    r->objects = rgi_word(record, 1);
+    result = rgi_find_shape(&replay->loader, record, (uint32_t)rgi_word(record, 2), &from);
+    if (!result) result = rgi_find_shape(&replay->loader, record, (uint32_t)(rgi_word(record, 2) >> 32), &to);
+    if (!result) result = rgi_replace_shape(replay->loader.scene, from, to, &what);
+    if (result) return result;
+    if (what.first != r->object) return other_id(record, "object", what.first, r->object);
+    return what.count == r->objects ? RG_OK : wrong(record, "the number of objects that had the shape is another");
+}
+
 /* ------------------------------------------------------------------------------------------------------ grids */
 
 static rg_result play_grid(rg_replay *replay, const rgi_stream_record *record, rg_replay_report *r) {
@@ -225,8 +245,10 @@ static rg_result play(rg_replay *replay, const rgi_stream_record *record, rg_rep
     typedef rg_result player(rg_replay * replay, const rgi_stream_record *record, rg_replay_report *r);
     static player *const players[] = {NULL,           play_insert,   play_insert_many, play_move,        play_move_to,
                                       play_move_many, play_set_mask, play_remove,      play_remove_many, play_grid,
-                                      play_grid,      play_grid,     play_grid};
-    if (record->kind == RG_CALL_NONE || record->kind >= sizeof players / sizeof *players)
+                                      play_grid,      play_grid,     play_grid,        play_replace};
+    const uint32_t calls =
+        replay->loader.reader.version == 1 ? CALLS_OF_VERSION_1 : (uint32_t)(sizeof players / sizeof *players);
+    if (record->kind == RG_CALL_NONE || record->kind >= calls)
         return wrong(record, "a record of no known kind");
     r->call = (rg_call)record->kind;
     rg_result result = players[record->kind](replay, record, r);

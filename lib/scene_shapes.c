@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* One shape in place of another. */
+#include "scene_shapes.h"
+
 #include "any_grid.h"
 #include "error.h"
 #include "frame.h"
+#include "record.h"
 #include "scene_objects.h"
 
 #include <inttypes.h>
@@ -49,21 +51,28 @@ static rg_result make_room(rg_scene *scene, const replace_need *need) {
     return result;
 }
 
-static rg_result replace(rg_scene *scene, rg_shape *from, rg_shape *to, rg_shape **gone) {
+/* Gives one object its new shape. Room has been made for it. */
+static rg_result replace_one(rg_scene *scene, uint32_t slot, rg_shape *to, rg_shape **gone) {
+    rgi_object *object = rgi_scene_object(scene, slot);
+    rgi_placing p;
+    (void)place_with(scene, object, to, &p); /* was checked before */
+    rg_result result = rgi_move_one(scene, slot, &p);
+    if (result) return result;
+    rg_shape_retain(to);
+    rgi_shape_put_aside(object->shape, gone);
+    object->shape = to;
+    return RG_OK;
+}
+
+static rg_result replace(rg_scene *scene, const rg_shape *from, rg_shape *to, rg_shape **gone, rgi_replaced *what) {
     replace_need need;
     rg_result result = check_each(scene, from, to, &need);
     if (!result) result = make_room(scene, &need);
     for (uint32_t slot = 0; slot < scene->objects.used && !result; slot++) {
-        rgi_object *object = rgi_scene_object(scene, slot);
-        rgi_placing p;
+        const rgi_object *object = rgi_scene_object(scene, slot);
         if (object->shape != from) continue;
-        (void)place_with(scene, object, to, &p);
-        result = rgi_move_one(scene, slot, &p);
-        if (result) break;
-        rg_shape_retain(to);
-        object->shape = to;
-        rgi_scene_changed(scene, slot);
-        rgi_shape_put_aside(from, gone);
+        result = replace_one(scene, slot, to, gone);
+        if (what->count++ == 0) what->first = rgi_object_id(object, slot);
     }
     for (uint32_t g = 0; g < scene->grid_places && !result; g++) {
         if (need.objects[g]) rgi_any_grid_settle(scene->grids[g].grid, scene, need.objects[g]);
@@ -71,14 +80,22 @@ static rg_result replace(rg_scene *scene, rg_shape *from, rg_shape *to, rg_shape
     return result;
 }
 
-rg_result rg_scene_replace_shape(rg_scene *scene, rg_shape *from, rg_shape *to) {
+rg_result rgi_replace_shape(rg_scene *scene, rg_shape *from, rg_shape *to, rgi_replaced *what) {
     rgi_frame frame;
     rg_shape *gone = NULL;
     if (!from || !to) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", from ? "to" : "from");
     rg_result result = rgi_scene_begin_change(scene, &frame);
     if (result) return result;
-    if (from != to) result = replace(scene, from, to, &gone);
+    *what = (rgi_replaced){RG_NO_OBJECT, 0};
+    if (from != to) result = replace(scene, from, to, &gone, what);
+    /* Where no object had the shape nothing has changed. */
+    if (!result && what->count) RGI_RECORD(replace, scene, from, what->first, what->count);
     result = rgi_scene_end_change(scene, &frame, result);
     rgi_shapes_destroy(gone);
     return result;
+}
+
+rg_result rg_scene_replace_shape(rg_scene *scene, rg_shape *from, rg_shape *to) {
+    rgi_replaced what;
+    return rgi_replace_shape(scene, from, to, &what);
 }

@@ -55,16 +55,17 @@ static uint64_t next_summed(rgi_reader *r) {
 }
 
 rg_result rgi_reader_begin(rgi_reader *r, const void *bytes, uint64_t size) {
-    *r = (rgi_reader){bytes, size, 0, 0, 0};
+    *r = (rgi_reader){bytes, size, 0, 0, 0, 0};
     if (size < HEAD_WORDS * RGI_WORD)
         return rgi_fail(RG_INVALID_DATA, "%" PRIu64 " bytes are no snapshot and no recording", size);
     if (next_summed(r) != RGI_MAGIC)
         return rgi_fail(RG_INVALID_DATA, "byte 0: this is no snapshot and no recording of raygrid");
     uint64_t word = next_summed(r);
+    r->version = (uint32_t)word;
     r->what = (uint32_t)(word >> 32);
-    if ((uint32_t)word != RG_FORMAT_VERSION)
-        return rgi_fail(RG_INVALID_DATA, "byte 8: the format is of version %" PRIu32 ", this library reads %d",
-                        (uint32_t)word, RG_FORMAT_VERSION);
+    if (r->version < 1 || r->version > RG_FORMAT_VERSION)
+        return rgi_fail(RG_INVALID_DATA, "byte 8: the format is of version %" PRIu32 ", this library reads 1 to %d",
+                        r->version, RG_FORMAT_VERSION);
     if (r->what != RGI_SNAPSHOT && r->what != RGI_RECORDING)
         return rgi_fail(RG_INVALID_DATA, "byte 12: kind %" PRIu32 " is neither a snapshot nor a recording", r->what);
     return RG_OK;

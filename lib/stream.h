@@ -100,7 +100,7 @@ typedef struct rgi_reader {
     const unsigned char *bytes;
     uint64_t size, at;
     uint64_t sum;
-    uint32_t what;
+    uint32_t version, what;
 } rgi_reader;
 
 typedef struct rgi_stream_record {

@@ -14,8 +14,9 @@
  *     Structs without a size (rg_allocator, views of fields, rg_pose, rg_ray, rg_hit, and what callbacks see) never
  *     change within a major version.
  *   - Nothing here needs alignment beyond that of the C types.
- *   - The library has no global state, makes no threads but the workers of a scene, installs no handlers, reads no
- *     environment variables, never prints and never ends the process.
+ *   - The library has no global state, makes no threads but the workers of a scene and those that are asked to help
+ *     with a mesh (rg_shape_config.workers), installs no handlers, reads no environment variables, never prints and
+ *     never ends the process.
  */
 #ifndef RAYGRID_BASE_H
 #define RAYGRID_BASE_H

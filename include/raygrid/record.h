@@ -30,8 +30,8 @@
 extern "C" {
 #endif
 
-/** The version of the format that this library writes, and the only one that it reads. */
-#define RG_FORMAT_VERSION 1
+/** The version of the format that this library writes. It reads that and those before it, from 1 on. */
+#define RG_FORMAT_VERSION 2
 
 /* --------------------------------------------------------------------------------------------- out and in */
 
@@ -110,7 +110,8 @@ RG_API rg_result rg_scene_load(const rg_scene_config *config, const rg_source *s
  *
  * When the recording can't go on (write failed, no memory, a user-defined shape without a number), it ends; the call
  * that was to be recorded succeeds all the same, what has been written is good up to there, the scene's log is told,
- * and the call that ends the recording returns why. A recording holds a reference to each shape that it has written.
+ * and the call that ends the recording returns why. A recording holds a reference to each shape that it has written:
+ * of a mesh that is given new vertices again and again, to all of them.
  * Errors when it begins: as rg_scene_save; RG_BUSY (there is one, the scene is a frame, or from inside a callback).
  * When it ends: RG_CALLBACK_FAILED, RG_OUT_OF_MEMORY, RG_INVALID_ARGUMENT, if it could not be written to its end; it
  * is over all the same. RG_BUSY: from inside a callback.
@@ -136,7 +137,8 @@ enum {
     RG_CALL_GRID_CREATE = 9,
     RG_CALL_GRID_DESTROY = 10,
     RG_CALL_GRID_CONFIGURE = 11,
-    RG_CALL_GRID_REBUILD = 12
+    RG_CALL_GRID_REBUILD = 12,
+    RG_CALL_REPLACE_SHAPE = 13
 };
 
 /** The name of the function that makes a call, such as "rg_scene_insert"; "unknown" for a number that is none. */
@@ -156,7 +158,7 @@ typedef struct rg_replay_report {
     size_t size;
     uint64_t calls;   /* played so far, this one among them */
     uint64_t offset;  /* bytes of the recording up to here */
-    uint64_t objects; /* that the call was about */
+    uint64_t objects; /* that the call was about; of RG_CALL_REPLACE_SHAPE those that had the shape */
     rg_object object; /* the first of them, or RG_NO_OBJECT */
     rg_call call;     /* RG_CALL_NONE: there was no more call */
     rg_grid grid;     /* that the call was about, or into which objects were inserted; else 0 */

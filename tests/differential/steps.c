@@ -171,6 +171,21 @@ void world_remove_many(world *w, uint32_t count) {
     for (uint32_t i = 0; !twice && i < count; i++) note_removed(w, ids[i]);
 }
 
+/* The reference knows no such call: its objects go and come back. */
+void world_replace_shape(world *w) {
+    const world_shape *from = shape_of(w, world_pick(w)), *to = pick_shape(w);
+    if (!to->finite || to == from) return;
+    for (size_t i = reference_count(w->reference); i-- > 0;) {
+        rg_object id = reference_object(w->reference, i);
+        if (shape_of(w, id) != from) continue;
+        rg_pose pose = *reference_pose(w->reference, id);
+        uint32_t mask = reference_mask(w->reference, id);
+        reference_remove(w->reference, id);
+        reference_insert(w->reference, id, to->reference, &pose, mask);
+    }
+    world_expect(w, "rg_scene_replace_shape", rg_scene_replace_shape(w->scene, from->shape, to->shape), RG_OK);
+}
+
 static uint64_t rebuilds_of(const world *w, int g) {
     rg_grid_report report = {.size = sizeof report};
     world_expect(w, "rg_grid_stats", rg_grid_stats(w->scene, w->grids[g], &report), RG_OK);
@@ -268,6 +283,8 @@ void world_step(world *w, uint32_t population) {
         set_mask(w);
     else if (what < 997)
         misuse(w);
-    else
+    else if (what < 999)
         rebuild_one(w);
+    else
+        world_replace_shape(w);
 }

@@ -88,6 +88,7 @@ void world_move_one(world *w);
 void world_move_many(world *w, uint32_t count);
 void world_remove_one(world *w);
 void world_remove_many(world *w, uint32_t count);
+void world_replace_shape(world *w);
 /** Any of these, the population held near `population`; also masks, rebuilds, and calls that must fail. */
 void world_step(world *w, uint32_t population);
 /** Gives a grid a random configuration of any kind. */

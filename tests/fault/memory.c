@@ -14,9 +14,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MANY = 200, OBJECTS = 1024, PROBES = 24, SHAPES = 5, SIDE = 12 };
+enum { MANY = 200, OBJECTS = 1024, PROBES = 24, SHAPES = 6, INSERTED = 5, SIDE = 12 };
 
-enum { BALL, CUBE, PILL, SOLID, OWN };
+enum { BALL, CUBE, PILL, SOLID, OWN, BENT };
 
 typedef struct scenario {
     test_allocator memory;
@@ -75,15 +75,15 @@ static rg_result make_scene(scenario *s, uint32_t workers) {
     return rg_scene_create(&config, &s->scene);
 }
 
-/* A dented square of SIDE x SIDE quads, each cut in two. */
-static rg_result make_mesh(const rg_shape_config *config, rg_shape **shape) {
+/* A dented square of SIDE x SIDE quads, each cut in two. `mesh`: the one that is to be as deep as that; or NULL. */
+static rg_result make_mesh(const rg_shape_config *config, const rg_shape *mesh, float depth, rg_shape **shape) {
     enum { ROW = SIDE + 1 };
     static float vertices[ROW * ROW][3];
     static uint16_t indices[SIDE * SIDE * 2][3];
     for (int i = 0; i < ROW * ROW; i++) {
         vertices[i][0] = 2 * (float)(i % ROW) / SIDE - 1;
         vertices[i][1] = 2 * (float)(i / ROW) / SIDE - 1;
-        vertices[i][2] = 0.1f * (float)(i % 7);
+        vertices[i][2] = depth * (float)(i % 7);
     }
     for (int i = 0; i < SIDE * SIDE; i++) {
         int corner = i / SIDE * ROW + i % SIDE;
@@ -93,7 +93,7 @@ static rg_result make_mesh(const rg_shape_config *config, rg_shape **shape) {
     rg_mesh_views views = {.size = sizeof views, .vertex_count = ROW * ROW, .triangle_count = SIDE * SIDE * 2};
     views.vertices = rg_input3_packed(vertices, sizeof vertices[0], RG_F32);
     views.indices = rg_input3_packed(indices, sizeof indices[0], RG_U16);
-    return rg_shape_create_mesh(config, &views, shape);
+    return mesh ? rg_shape_create_deformed(config, mesh, &views, shape) : rg_shape_create_mesh(config, &views, shape);
 }
 
 static rg_result make_shape(scenario *s, uint32_t which) {
@@ -110,7 +110,9 @@ static rg_result make_shape(scenario *s, uint32_t which) {
     case PILL:
         return rg_shape_create_capsule(&config, LO, HI, 0.5, &s->shapes[PILL]);
     case SOLID:
-        return make_mesh(&config, &s->shapes[SOLID]);
+        return make_mesh(&config, NULL, 0.1f, &s->shapes[SOLID]);
+    case BENT:
+        return make_mesh(&config, s->shapes[SOLID], 0.3f, &s->shapes[BENT]);
     default:
         return rg_shape_create_user(&config, &own, &s->shapes[OWN]);
     }
@@ -127,7 +129,7 @@ static rg_pose pose_of(uint32_t number, double scale) {
 
 static rg_result insert_one(scenario *s, uint32_t scale) {
     rg_pose pose = pose_of(s->count, scale);
-    rg_result result = rg_scene_insert(s->scene, s->shapes[s->count % SHAPES], &pose, &s->objects[s->count]);
+    rg_result result = rg_scene_insert(s->scene, s->shapes[s->count % INSERTED], &pose, &s->objects[s->count]);
     if (result == RG_OK) s->count++;
     return result;
 }
@@ -136,7 +138,7 @@ static rg_result insert_many(scenario *s, uint32_t into_second_grid) {
     rg_shape *shapes[MANY];
     rg_pose poses[MANY];
     for (uint32_t i = 0; i < MANY; i++) {
-        shapes[i] = s->shapes[i % SHAPES];
+        shapes[i] = s->shapes[i % INSERTED];
         poses[i] = pose_of(s->count + i, 20);
     }
     rg_insert_views views = {.size = sizeof views, .shapes = shapes, .shapes_stride = sizeof *shapes};
@@ -209,6 +211,11 @@ static rg_result move_out(scenario *s, uint32_t unused) {
     return rg_scene_move_to(s->scene, s->objects[s->turns * 11 % s->count], place);
 }
 
+/* The shape of the second digit in place of that of the first. */
+static rg_result replace_shape(scenario *s, uint32_t shapes) {
+    return rg_scene_replace_shape(s->scene, s->shapes[shapes / 10], s->shapes[shapes % 10]);
+}
+
 static rg_result set_mask(scenario *s, uint32_t mask) {
     return rg_scene_set_mask(s->scene, s->objects[3], mask);
 }
@@ -262,6 +269,7 @@ static const step STEPS[] = {
     {"shape", make_shape, PILL, 1, false},
     {"mesh", make_shape, SOLID, 1, false},
     {"user shape", make_shape, OWN, 1, false},
+    {"new vertices", make_shape, BENT, 1, false},
     {"insert", insert_one, 5, 40, false},
     {"grid", make_grid, 0, 1, false},
     {"grid", make_grid, 1, 1, false},
@@ -269,6 +277,8 @@ static const step STEPS[] = {
     {"insert many into the second grid", insert_many, 1, 1, false},
     {"move", move_one, 30, 10, false},
     {"move_to", move_to, 1000, 10, false},
+    {"replace a mesh", replace_shape, 10 * SOLID + BENT, 1, false},
+    {"replace balls", replace_shape, 10 * BALL + CUBE, 1, false},
     {"set_mask", set_mask, 5, 1, false},
     {"move many", move_many, 500, 1, false},
     {"rebuild", rebuild, 0, 1, false},
@@ -281,6 +291,8 @@ static const step STEPS[] = {
     {"step", step_one, 0, 20, true},
     {"crowd", crowd_one, 0, 60, true},
     {"out of all cells", move_out, 0, 12, false},
+    {"replace also what has no cell", replace_shape, 10 * CUBE + BALL, 1, false},
+    {"replace also what has no cell", replace_shape, 10 * BENT + PILL, 1, false},
     {"and back", move_to, 20, 12, false},
     {"insert far away", insert_one, 100000, 10, false},
     {"move many", move_many, 50, 1, false},

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * threads: the system refuses the N-th thread of a scene. Linked to the archive with pthread_create and pthread_join
- * wrapped: rg_scene_create returns RG_OUT_OF_THREADS, the threads that did start have ended, and no memory is left.
+ * threads: the system refuses the N-th thread of a scene, or of the making of a mesh. Linked to the archive with
+ * pthread_create and pthread_join wrapped: the call returns RG_OUT_OF_THREADS, the threads that did start have ended,
+ * and no memory is left.
  */
 #include "allocator.h"
 
@@ -70,11 +71,36 @@ static void allow(uint32_t workers) {
     demand(memory.live_blocks == 0, "memory is left", 0);
 }
 
+static rg_result create_mesh(test_allocator *memory, uint32_t workers, rg_shape **shape) {
+    static const float CORNERS[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    rg_shape_config config = {.size = sizeof config, .workers = workers, .allocator = test_allocator_hooks(memory)};
+    rg_mesh_views views = {.size = sizeof views, .vertex_count = 3, .triangle_count = 1};
+    views.vertices = rg_input3_packed(CORNERS, sizeof *CORNERS, RG_F32);
+    created = joined = 0;
+    return rg_shape_create_mesh(&config, &views, shape);
+}
+
+/* n 0: none is refused; else the n-th. */
+static void make_mesh(uint32_t workers, int n) {
+    test_allocator memory = {0};
+    rg_shape *shape = NULL;
+    fail_at = n;
+    rg_result result = create_mesh(&memory, workers, &shape);
+    demand(result == (n ? RG_OUT_OF_THREADS : RG_OK), "rg_shape_create_mesh", n);
+    demand(created == (n ? n : (int)workers) - 1, "threads of a mesh", n);
+    demand(joined == created, "not all threads of a mesh were waited for", n);
+    demand((shape != NULL) == (n == 0), "a mesh", n);
+    rg_shape_release(&shape);
+    demand(memory.live_blocks == 0, "memory is left", n);
+}
+
 int main(void) {
     for (int n = 1; n <= 7; n++) refuse(8, n);
     refuse(2, 1);
     allow(1);
     allow(2);
     allow(8);
+    for (int n = 0; n <= 2; n++) make_mesh(3, n);
+    make_mesh(1, 0);
     return EXIT_SUCCESS;
 }

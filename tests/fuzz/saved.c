@@ -37,7 +37,7 @@ static void release(void *user, void *memory, size_t size, size_t alignment) {
     free(memory);
 }
 
-static const rg_shape_config SHAPES = {sizeof SHAPES, {NULL, allocate, release}};
+static const rg_shape_config SHAPES = {.size = sizeof SHAPES, .allocator = {NULL, allocate, release}};
 static const rg_scene_config SCENE = {.size = sizeof SCENE, .workers = 1, .allocator = {NULL, allocate, release}};
 
 static rg_source source_of(const byte_sink *bytes) {

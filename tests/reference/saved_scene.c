@@ -37,15 +37,17 @@ static rg_result make_user(uint64_t number, rg_shape **shape) {
     return rg_shape_create_user(NULL, &plane, shape);
 }
 
-static rg_result make_mesh(bool indexed, rg_shape **shape) {
-    static const float VERTICES[7][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},      {0, -1.1f, 0},
-                                         {0, 0, 1}, {0, 0, -1}, {0.1f, 0.2f, 9}}; /* the last is not used */
+/* `mesh`: the one that gets other vertices, or NULL. */
+static rg_result make_mesh(bool indexed, const rg_shape *mesh, rg_shape **shape) {
+    static const float VERTICES[8][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},       {0, -1.1f, 0},
+                                         {0, 0, 1}, {0, 0, -1}, {0.1f, 0.2f, 9}, {2, 0.5f, 0}};
+    /* The last vertex of a mesh is not used. */
     static const uint16_t FACES[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                                          {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
     rg_mesh_views views = {.size = sizeof views, .vertex_count = 7, .triangle_count = indexed ? 7 : 2};
-    views.vertices = rg_input3_packed(VERTICES, sizeof *VERTICES, RG_F32);
+    views.vertices = rg_input3_packed(VERTICES[mesh ? 1 : 0], sizeof *VERTICES, RG_F32);
     if (indexed) views.indices = rg_input3_packed(FACES, sizeof *FACES, RG_U16);
-    return rg_shape_create_mesh(NULL, &views, shape);
+    return mesh ? rg_shape_create_deformed(NULL, mesh, &views, shape) : rg_shape_create_mesh(NULL, &views, shape);
 }
 
 static void make_shapes(saved_scene *s) {
@@ -55,8 +57,11 @@ static void make_shapes(saved_scene *s) {
     demand(rg_shape_create_sphere(NULL, 0.3, &s->shapes[1]));
     demand(rg_shape_create_box(NULL, LO, HI, &s->shapes[2]));
     demand(rg_shape_create_capsule(NULL, ENDS[0], ENDS[1], 0.2, &s->shapes[3]));
-    demand(make_mesh(true, &s->shapes[4]));
-    demand(make_mesh(false, &s->shapes[5]));
+    demand(make_mesh(true, NULL, &s->shapes[4]));
+    demand(make_mesh(false, NULL, &s->shapes[5]));
+    demand(make_mesh(true, s->shapes[4], &s->forms[1]));
+    s->forms[0] = s->shapes[4];
+    rg_shape_retain(s->forms[0]);
     demand(rg_shape_create_box(NULL, WIDE[0], WIDE[1], &s->shapes[6]));
     demand(make_user(0, &s->shapes[7]));
     demand(make_user(1, &s->shapes[8]));
@@ -95,6 +100,7 @@ void saved_scene_make(saved_scene *s, rg_grid_kind kind, uint32_t workers) {
 void saved_scene_end(saved_scene *s) {
     demand(rg_scene_destroy(&s->scene));
     for (int i = 0; i < SAVED_SHAPES; i++) rg_shape_release(&s->shapes[i]);
+    for (int i = 0; i < 2; i++) rg_shape_release(&s->forms[i]);
 }
 
 static uint64_t change_many(saved_scene *s, uint32_t turn) {
@@ -131,6 +137,14 @@ static uint64_t change_grids(saved_scene *s, uint32_t turn) {
     return 4;
 }
 
+static uint64_t change_form(saved_scene *s) {
+    rg_shape *now = s->forms[1];
+    demand(rg_scene_replace_shape(s->scene, s->forms[0], now));
+    s->forms[1] = s->forms[0];
+    s->forms[0] = now;
+    return 1;
+}
+
 uint64_t saved_scene_change(saved_scene *s, uint32_t turn) {
     uint32_t i = turn % 8, other = 51 + turn % 6; /* neither is ever removed */
     rg_pose pose = pose_of(turn + 3);
@@ -146,7 +160,9 @@ uint64_t saved_scene_change(saved_scene *s, uint32_t turn) {
         demand(rg_scene_remove(s->scene, object));
         calls++;
     }
-    return calls + change_many(s, turn) + change_grids(s, turn);
+    calls += change_many(s, turn);
+    calls += change_grids(s, turn);
+    return calls + change_form(s);
 }
 
 /* ------------------------------------------------------------------------------------------------- bytes */

@@ -13,6 +13,7 @@ enum { SAVED_SHAPES = 9, SAVED_OBJECTS = 60, SAVED_RAYS = 400 };
 typedef struct saved_scene {
     rg_scene *scene;
     rg_shape *shapes[SAVED_SHAPES]; /* all kinds; the last two are user-defined, of numbers 0 and 1 */
+    rg_shape *forms[2];             /* the mesh with its triangles shared, as it is now and as it will be next */
     rg_grid grid;                   /* a second one, behind a place that is free */
     rg_object objects[SAVED_OBJECTS];
 } saved_scene;

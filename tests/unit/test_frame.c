@@ -119,6 +119,8 @@ static void change_one(void) {
         ck_assert_int_eq(rg_scene_set_mask(scene, ids[i], what < 0.95 ? 3 : UINT32_MAX), RG_OK);
     }
     for (rg_grid g = 1; what > 0.99 && g < 3000; g++) (void)rg_grid_destroy(scene, g); /* those that are empty */
+    if (what > 0.985 && what < 0.99) /* of all that have it */
+        ck_assert_int_eq(rg_scene_replace_shape(scene, shapes[i % 3], shapes[(i + 1) % 3]), RG_OK);
     const rg_grid_config other = {.size = sizeof other, .kind = 1 + i % 3, .resolution = 4};
     if (what > 0.993) ck_assert_int_eq(rg_grid_configure(scene, RG_GRID_OF_SCENE, &other), RG_OK);
 }

@@ -18,7 +18,8 @@ static const double places[] = {1e4, -2e4, 4e4, -8e4};
 /* What the scene must hold. */
 static struct {
     rg_scene *scene;
-    rg_shape *ball;
+    rg_shape *forms[3]; /* that the objects have one after the other */
+    int form;
     rg_object ids[MANY]; /* 0: none */
     double at[MANY][3];
     long blocks_left; /* that the allocator still gives; below 0: all */
@@ -40,19 +41,37 @@ static void release(void *user, void *block, size_t size, size_t alignment) {
     free(block);
 }
 
+/* Half as wide along x as that: the last is the larger one. */
+static double half_width(void) {
+    return w.form == 2 ? 1.25 : 1;
+}
+
+static void make_forms(void) {
+    ck_assert_int_eq(rg_shape_create_sphere(NULL, 1, &w.forms[0]), RG_OK);
+    ck_assert_int_eq(rg_shape_create_box(NULL, (double[]){-1, -1, -1}, (double[]){1, 1, 1}, &w.forms[1]), RG_OK);
+    ck_assert_int_eq(rg_shape_create_sphere(NULL, 1.25, &w.forms[2]), RG_OK);
+}
+
+/* All objects get another form at once. */
+static rg_result reform(void) {
+    rg_result result = rg_scene_replace_shape(w.scene, w.forms[w.form], w.forms[(w.form + 1) % 3]);
+    if (!result) w.form = (w.form + 1) % 3;
+    return result;
+}
+
 static void begin(rg_grid_kind kind, uint32_t workers) {
     const rg_grid_config grid = {.size = sizeof grid, .kind = kind};
     const rg_scene_config config = {
         .size = sizeof config, .workers = workers, .grid = &grid, .allocator = {NULL, allocate, release}};
     memset(&w, 0, sizeof w);
     w.blocks_left = -1;
-    ck_assert_int_eq(rg_shape_create_sphere(NULL, 1, &w.ball), RG_OK);
+    make_forms();
     ck_assert_int_eq(rg_scene_create(&config, &w.scene), RG_OK);
 }
 
 static void end(void) {
     ck_assert_int_eq(rg_scene_destroy(&w.scene), RG_OK);
-    rg_shape_release(&w.ball);
+    for (int i = 0; i < 3; i++) rg_shape_release(&w.forms[i]);
     ck_assert_uint_eq(w.bytes, 0);
 }
 
@@ -72,7 +91,7 @@ static void place(int i, double far) {
 static rg_result insert(int i, double far) {
     place(i, far);
     const rg_pose pose = rg_pose_at(w.at[i][0], w.at[i][1], w.at[i][2]);
-    return rg_scene_insert(w.scene, w.ball, &pose, &w.ids[i]);
+    return rg_scene_insert(w.scene, w.forms[w.form], &pose, &w.ids[i]);
 }
 
 static rg_result move(int i, double far) {
@@ -107,8 +126,8 @@ static void check(int i) {
     rg_hit hit;
     MUST(rg_scene_trace(w.scene, &ray, &hit, 1) == RG_OK);
     MUST(hit.object == w.ids[i]);
-    MUST(!w.ids[i] || fabs(hit.t - (w.at[i][0] - 1 + 1e5)) <= 0x1p-30);
-    if (w.ids[i]) check_from_nearby(i);
+    MUST(!w.ids[i] || fabs(hit.t - (w.at[i][0] - half_width() + 1e5)) <= 0x1p-30);
+    if (w.ids[i] && w.form == 0) check_from_nearby(i);
 }
 
 static void check_some(void) {
@@ -161,6 +180,10 @@ START_TEST(by_the_changes) {
             ck_assert_int_eq(change((int)(unit_random() * MANY), far), RG_OK);
             check_some();
             during++;
+            if (during % 16 == 9) {
+                ck_assert_int_eq(reform(), RG_OK);
+                check_all();
+            }
         }
         check_all();
     }
@@ -181,6 +204,7 @@ START_TEST(by_a_worker) {
         for (int n = 0; n < 100 * MANY && (report().rebuilding || report().rebuilds == before); n++) {
             ck_assert_int_eq(change((int)(unit_random() * MANY), far), RG_OK);
             check_some();
+            if (n % 64 == 20) ck_assert_int_eq(reform(), RG_OK);
         }
         ck_assert_uint_gt(report().rebuilds, before);
         check_all();
@@ -211,6 +235,7 @@ START_TEST(without_memory) {
         for (int n = 0; n < 200; n++) {
             int i = (int)(unit_random() * MANY);
             if (w.ids[i]) (void)move(i, 1e4);
+            if (n % 50 == 20) (void)reform();
             check_some();
         }
         w.blocks_left = -1;
@@ -297,7 +322,7 @@ static void insert_in_vain(long blocks) {
     const rg_insert_views views = {
         .size = sizeof views, .shapes = shapes, .shapes_stride = sizeof *shapes, .poses = &poses};
     for (int i = 0; i < MORE; i++) {
-        shapes[i] = w.ball;
+        shapes[i] = w.forms[w.form];
         for (int k = 0; k < 3; k++) at[i][k] = -1e5 * (1 + unit_random());
     }
     w.blocks_left = blocks;

@@ -70,7 +70,7 @@ START_TEST(steps_tell_what_they_were) {
     static const rg_call CALLS[] = {RG_CALL_MOVE,         RG_CALL_MOVE_TO,     RG_CALL_SET_MASK,
                                     RG_CALL_INSERT,       RG_CALL_INSERT_MANY, RG_CALL_MOVE_MANY,
                                     RG_CALL_REMOVE_MANY,  RG_CALL_GRID_CREATE, RG_CALL_GRID_CONFIGURE,
-                                    RG_CALL_GRID_REBUILD, RG_CALL_GRID_DESTROY};
+                                    RG_CALL_GRID_REBUILD, RG_CALL_GRID_DESTROY, RG_CALL_REPLACE_SHAPE};
     saved_scene s;
     byte_sink bytes = {0};
     rg_replay *replay;
@@ -89,7 +89,8 @@ START_TEST(steps_tell_what_they_were) {
         ck_assert_uint_eq(r.calls, i + 1);
         ck_assert_uint_gt(r.offset, before);
         if (i == 0) ck_assert_uint_eq(r.object, s.objects[1]);
-        ck_assert_uint_eq(r.objects, i < 4 ? 1 : i < 6 ? 4 : i == 6 ? 3 : 0);
+        ck_assert_uint_eq(r.objects, i < 4 ? 1 : i < 6 ? 4 : i == 6 ? 3 : i == 11 ? 6 : 0);
+        if (i == 11) ck_assert_uint_eq(r.object, s.objects[4]);
         if (i == 4 || i == 9) ck_assert_uint_eq(r.grid, s.grid);
     }
     for (int i = 0; i < 2; i++) {
@@ -115,7 +116,8 @@ START_TEST(names_of_calls) {
     ck_assert_str_eq(rg_call_name(RG_CALL_MOVE_MANY), "rg_scene_move_many");
     ck_assert_str_eq(rg_call_name(RG_CALL_GRID_REBUILD), "rg_grid_rebuild");
     ck_assert_str_eq(rg_call_name(-1), "unknown");
-    ck_assert_str_eq(rg_call_name(RG_CALL_GRID_REBUILD + 1), "unknown");
+    ck_assert_str_eq(rg_call_name(RG_CALL_REPLACE_SHAPE), "rg_scene_replace_shape");
+    ck_assert_str_eq(rg_call_name(RG_CALL_REPLACE_SHAPE + 1), "unknown");
 }
 END_TEST
 
@@ -130,6 +132,10 @@ START_TEST(calls_that_fail_are_not_recorded) {
     ck_assert_int_eq(rg_scene_remove(s.scene, RG_NO_OBJECT), RG_INVALID_ID);
     ck_assert_int_eq(rg_scene_insert(s.scene, NULL, NULL, NULL), RG_INVALID_ARGUMENT);
     ck_assert_int_eq(rg_grid_destroy(s.scene, RG_GRID_OF_SCENE), RG_BUSY);
+    ck_assert_int_eq(rg_scene_replace_shape(s.scene, s.shapes[0], s.shapes[6]), RG_INVALID_VALUE);
+    /* Nor those that find nothing to change. */
+    ck_assert_int_eq(rg_scene_replace_shape(s.scene, s.forms[1], s.shapes[0]), RG_OK);
+    ck_assert_int_eq(rg_scene_replace_shape(s.scene, s.shapes[0], s.shapes[0]), RG_OK);
     ck_assert_uint_eq(bytes.size, size);
     end(s.scene);
     demand_same(&bytes, s.scene, 0, 1);
@@ -322,8 +328,15 @@ START_TEST(a_call_that_comes_out_otherwise) {
     ck_assert_int_eq(rg_scene_move_to(s.scene, object, place), RG_OK);
     size_t at_grid = bytes.size;
     ck_assert_int_eq(rg_grid_create(s.scene, NULL, &grid), RG_OK);
-    size_t at_end = bytes.size;
+    ck_assert_int_eq(rg_scene_replace_shape(s.scene, s.shapes[0], s.shapes[1]), RG_OK);
+    size_t at_end = bytes.size, at_replace = at_end - 5 * RGI_WORD;
     end(s.scene);
+    demand_refused(&bytes, at_replace + 8, object, "came out");
+    demand_refused(&bytes, at_replace + 16, 1, "is another");
+    demand_refused(&bytes, at_replace + 24, 99, "shape 99");
+    demand_refused(&bytes, at_replace + 24, UINT64_C(99) << 32, "shape 99");
+    demand_refused(&bytes, at_replace + 24, UINT64_C(6) << 32, "infinite box");
+    demand_refused(&bytes, at_replace, 2 << 8 | RG_CALL_REPLACE_SHAPE, "words");
     demand_refused(&bytes, at_insert + 8, object + 1, "came out");
     demand_refused(&bytes, at_insert + 16, 99, "shape 99");
     demand_refused(&bytes, at_insert + 16, UINT64_C(4) << 32, "unknown parts");
@@ -338,10 +351,39 @@ START_TEST(a_call_that_comes_out_otherwise) {
     demand_refused(&bytes, at_move, 4 << 8 | RG_CALL_REMOVE_MANY, "stale");
     demand_refused(&bytes, at_grid + 8, grid + 1, "came out");
     demand_refused(&bytes, at_grid + 16, 77, "no kind of grid");
-    demand_refused(&bytes, at_end + 8, 4, "the end of 4 calls, but there were 3");
-    demand_same(&bytes, s.scene, 3, 1);
+    demand_refused(&bytes, at_end + 8, 3, "the end of 3 calls, but there were 4");
+    demand_same(&bytes, s.scene, 4, 1);
     saved_scene_end(&s);
     byte_sink_free(&bytes);
+}
+END_TEST
+
+/* Files of version 1 are those without replacements, but for the number. */
+START_TEST(version_1) {
+    saved_scene s;
+    byte_sink bytes = {0};
+    rg_scene *scene;
+    rg_replay_report last;
+    saved_scene_make(&s, RG_GRID_LOOSE, 1);
+    for (int with = 0; with < 2; with++) {
+        begin(s.scene, &bytes);
+        ck_assert_int_eq(rg_scene_set_mask(s.scene, s.objects[1], 7), RG_OK);
+        if (with) ck_assert_int_eq(rg_scene_replace_shape(s.scene, s.forms[0], s.forms[1]), RG_OK);
+        end(s.scene);
+        ck_assert_uint_eq(bytes.bytes[8], RG_FORMAT_VERSION);
+        bytes.bytes[8] = 1;
+        repair(bytes.bytes, bytes.size);
+        if (with) {
+            ck_assert_int_eq(play(&bytes, 1, &scene, &last), RG_INVALID_DATA);
+            ck_assert_ptr_nonnull(strstr(rg_error_message(), "no known kind"));
+            ck_assert_uint_eq(last.calls, 1);
+            rg_scene_destroy(&scene);
+        } else {
+            demand_same(&bytes, s.scene, 1, 1);
+        }
+        byte_sink_free(&bytes);
+    }
+    saved_scene_end(&s);
 }
 END_TEST
 
@@ -443,6 +485,7 @@ Suite *unit_suite(void) {
     tcase_add_test(c, every_prefix);
     tcase_add_test(c, every_changed_byte_is_noticed);
     tcase_add_test(c, a_call_that_comes_out_otherwise);
+    tcase_add_test(c, version_1);
     tcase_add_test(c, a_scene_that_the_host_changes_is_found_out);
     tcase_add_test(c, many_threads);
     suite_add_tcase(suite, c);

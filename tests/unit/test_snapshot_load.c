@@ -70,8 +70,11 @@ START_TEST(other_files_and_versions) {
     refused((const unsigned char *)"This is a text, of no kind at all", 33, "no snapshot");
     bytes.bytes[8] = 77;
     repair(bytes.bytes, bytes.size);
-    snprintf(text, sizeof text, "of version 77, this library reads %d", RG_FORMAT_VERSION);
+    snprintf(text, sizeof text, "of version 77, this library reads 1 to %d", RG_FORMAT_VERSION);
     refused(bytes.bytes, bytes.size, text);
+    bytes.bytes[8] = 0;
+    repair(bytes.bytes, bytes.size);
+    refused(bytes.bytes, bytes.size, "of version 0, this library reads 1 to");
     bytes.bytes[8] = RG_FORMAT_VERSION;
     bytes.bytes[12] = 3;
     repair(bytes.bytes, bytes.size);
