@@ -59,3 +59,45 @@ static void find_split(const rgi_wrap *items, uint32_t count, const rgi_wrap *ce
         if (scales[a] > 0) best_plane(b.box[a], b.count[a], used, fill, a, best);
     }
 }
+
+/* ------------------------------------------------------------------------------------------------ leaves */
+
+RGI_INLINE f16 f16_apart(f16 a, f16 b) {
+    f16 d = f16_sub(a, b);
+    return f16_max(d, f16_sub(f16_set(0), d));
+}
+
+static void measure_connected(rgi_mesh_leaf *leaf, float lo[3], float hi[3]) {
+    f16 most = f16_set(0);
+    for (int a = 0; a < 3; a++) {
+        f16 at = f16_load(leaf->at[a]);
+        f16 p = f16_take(at, leaf->corner[0]), q = f16_take(at, leaf->corner[1]), r = f16_take(at, leaf->corner[2]);
+        most = f16_max(most, f16_max(f16_apart(p, q), f16_max(f16_apart(q, r), f16_apart(r, p))));
+        lo[a] = f16_least(at);
+        hi[a] = f16_most(at);
+    }
+    leaf->longest = f16_most(most) * (1 + 0x1p-20f);
+}
+
+/* Lanes that hold no triangle are NaN, and do not count. */
+static void measure_soup(const rgi_soup_leaf *leaf, float lo[3], float hi[3]) {
+    for (int a = 0; a < 3; a++) {
+        float least[RGI_SOUP_LEAF], most[RGI_SOUP_LEAF];
+        f8 p = f8_load(leaf->at[0][a]), q = f8_load(leaf->at[1][a]), r = f8_load(leaf->at[2][a]);
+        f8_store(least, f8_min(f8_min(p, q), r));
+        f8_store(most, f8_max(f8_max(p, q), r));
+        lo[a] = (float)INFINITY;
+        hi[a] = -(float)INFINITY;
+        for (int i = 0; i < RGI_SOUP_LEAF; i++) {
+            lo[a] = least[i] < lo[a] ? least[i] : lo[a];
+            hi[a] = most[i] > hi[a] ? most[i] : hi[a];
+        }
+    }
+}
+
+static void measure_leaf(const rgi_mesh *mesh, void *leaf, float lo[3], float hi[3]) {
+    if (mesh->soup)
+        measure_soup(leaf, lo, hi);
+    else
+        measure_connected(leaf, lo, hi);
+}

@@ -6,6 +6,7 @@
  *
  * Where the caller's vertices are floats of common size they are the frame's to the last bit, and nothing else is
  * kept of them. Else the frame holds (vertex - origin) * scale rounded to float, and the vertices are kept in double.
+ * Leaves know the caller's numbers of their vertices, so that a mesh can be written down and get new vertices.
  */
 #ifndef RAYGRID_LIB_MESH_H
 #define RAYGRID_LIB_MESH_H
@@ -35,7 +36,7 @@ typedef struct rgi_mesh_leaf {
     float at[3][RGI_LEAF];        /* vertices, in the frame */
     uint8_t corner[3][RGI_LEAF];  /* of each triangle */
     uint32_t primitive[RGI_LEAF]; /* the caller's number of each */
-    uint32_t number;              /* of this leaf among all */
+    uint32_t number;              /* of this leaf in rgi_mesh.numbers */
     float longest;                /* no triangle's corners are farther apart along an axis */
     uint16_t triangles, vertices;
     uint32_t spare;
@@ -57,9 +58,11 @@ typedef struct rgi_mesh {
     uint32_t line_count;
     rgi_mesh_ref root;
     uint32_t triangle_count, vertex_count;
-    bool soup;               /* leaves are rgi_soup_leaf */
-    double (*vertices)[3];   /* in double; NULL where the frame's are exact */
-    uint32_t (*corners)[3];  /* of each triangle, where the vertices are kept */
+    bool soup;                      /* leaves are rgi_soup_leaf */
+    double (*vertices)[3];          /* in double; NULL where the frame's are exact */
+    uint32_t (*numbers)[RGI_LEAF];  /* of the vertices of each leaf; of a soup NULL */
+    uint32_t leaf_count;            /* of a soup 0 */
+    uint32_t (*corners)[3];         /* of each triangle of a soup; NULL if triangle i has the vertices 3i to 3i+2 */
     double lo[3], hi[3];     /* of the triangles: vertices that none uses do not count */
     double origin[3], scale; /* of the frame; a power of two */
     float pad;               /* around boxes, in the frame */
@@ -74,6 +77,16 @@ static inline uint32_t rgi_mesh_primitive(const rgi_mesh *mesh, const void *leaf
                       : ((const rgi_mesh_leaf *)leaf)->primitive[triangle];
 }
 
+/** The caller's number of a corner of a triangle of a leaf. */
+static inline uint32_t rgi_mesh_vertex(const rgi_mesh *mesh, const void *leaf, uint32_t triangle, uint32_t corner) {
+    if (!mesh->soup) {
+        const rgi_mesh_leaf *l = (const rgi_mesh_leaf *)leaf;
+        return mesh->numbers[l->number][l->corner[corner][triangle]];
+    }
+    uint32_t number = rgi_mesh_primitive(mesh, leaf, triangle);
+    return mesh->corners ? mesh->corners[number][corner] : 3 * number + corner;
+}
+
 static inline void *rgi_mesh_at(const rgi_mesh *mesh, rgi_mesh_ref ref) {
     return mesh->lines + (size_t)(ref & ~RGI_MESH_LEAF) * RGI_MESH_LINE;
 }
@@ -86,22 +99,25 @@ typedef struct rgi_mesh_making {
     void *parallel_for_user;
 } rgi_mesh_making;
 
-/** Copies the triangles of views of checked types and builds the tree; how NULL: as well as can be, alone. On failure
- * all is given back. */
+/**
+ * Copies the triangles of views of checked types and builds the tree; how NULL: as well as can be, alone. `like` NULL;
+ * or a mesh whose triangles are taken in place of those of the views, of which then only the vertices are read. On
+ * failure all is given back.
+ */
 rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, const rgi_mesh_making *how,
-                          rgi_mesh **mesh);
+                          const rgi_mesh *like, rgi_mesh **mesh);
 
-/** The same for new vertices of a mesh that stays as it is: its tree is taken over, unless it has worn out. */
+/** New vertices for a mesh that stays as it is: its tree is taken over, unless it has worn out. Of the views the
+ * vertices are read. */
 rg_result rgi_mesh_deform(rgi_memory *memory, const rgi_mesh *old, const rgi_mesh_making *how,
                           const rg_mesh_views *views, rgi_mesh **mesh);
 void rgi_mesh_destroy(rgi_mesh *mesh);
 
-/**
- * Copies the mesh: its vertices, rgi_mesh_read_vertices of them, and the vertices of all triangles in the caller's
- * order. Of a mesh that keeps no vertices each triangle gets three of its own: what rays meet is the same.
- */
-void rgi_mesh_read(const rgi_mesh *mesh, double (*vertices)[3], uint32_t (*triangles)[3]);
-uint64_t rgi_mesh_read_vertices(const rgi_mesh *mesh);
+/** Copies the vertices, as they were given but for those that no triangle uses and that may be 0 now. */
+void rgi_mesh_read_vertices(const rgi_mesh *mesh, double (*vertices)[3]);
+
+/** Copies the vertices' numbers of all triangles in the caller's order. */
+void rgi_mesh_read_triangles(const rgi_mesh *mesh, uint32_t (*triangles)[3]);
 
 bool rgi_mesh_intersect(const rgi_mesh *mesh, const rgi_local_ray *ray, rgi_candidate *candidate);
 

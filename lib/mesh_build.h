@@ -50,6 +50,7 @@ static inline int rgi_bin_of(float c, float lo, float scale) {
 typedef struct rgi_making {
     rgi_mesh *mesh;
     uint32_t (*triangles)[3]; /* vertices by the caller's numbers */
+    bool in_order;            /* triangle i has the vertices 3i to 3i+2 */
     float (*at)[3];           /* vertices in the frame */
     rgi_item *items;
     rgi_branch *branches; /* room for 2 a triangle: what is not used is never touched */
@@ -59,22 +60,19 @@ typedef struct rgi_making {
     rgi_pool *pool;       /* who helps */
 } rgi_making;
 
-/** RG_INVALID_VALUE if a vertex is not finite or too large; *exact: whether the frame can hold them as they are. */
-rg_result rgi_mesh_check(const rg_mesh_views *views, bool *exact);
+/** RG_INVALID_VALUE if a vertex is not finite or too large; *floats: whether all are floats, of whatever type. */
+rg_result rgi_mesh_check(const rg_mesh_views *views, bool *floats);
+
+/** Whether the frame can be that of the vertices, if they are floats: by the box of the mesh. */
+bool rgi_mesh_fits_floats(const rgi_mesh *mesh);
 
 /** Sets origin, scale, pads and middle of the frame for the box of the mesh. */
 void rgi_mesh_set_frame(rgi_mesh *mesh);
 
-/** The length of the longest side of a leaf's triangles along an axis, and a little more. */
-float rgi_leaf_longest(const rgi_mesh_leaf *leaf);
-
-/** Fails with RG_INVALID_VALUE: an index is too large. */
-rg_result rgi_fail_index(uint64_t index, uint32_t triangle, int corner, uint32_t vertices);
-
 /** Sets up items and branches and their costs. RG_OUT_OF_MEMORY. */
 rg_result rgi_branches_make(rgi_making *making);
 
-/** Makes lines, leaves and root out of the branches. */
+/** Makes lines, leaves, their numbers and root out of the branches. */
 rg_result rgi_lines_make(const rgi_making *making);
 
 static inline void rgi_wrap_empty(rgi_wrap *w) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "mesh_fit.h"
 
+#include "beam.h"
 #include "error.h"
 #include "mesh_build.h"
 #include "vec.h"
@@ -12,164 +13,178 @@
 /* A tree that was fitted to new vertices is made anew when rays cost so much more in it than in the tree as built. */
 #define WORN 1.5
 
-/* ---------------------------------------------------------------------------------------------- the boxes */
+/* ------------------------------------------------------------------------------------------------- the cost */
+
+static bool is_there(const rgi_mesh_node *node, uint32_t child) {
+    return node->lo[0][child] <= node->hi[0][child];
+}
+
+/* Half the areas of the boxes of all children below, added up. */
+static double settle(const rgi_mesh *mesh, rgi_mesh_ref ref, float pad) {
+    rgi_mesh_node *node = rgi_mesh_at(mesh, ref);
+    double sum = 0;
+    for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
+        double width[3];
+        if (!is_there(node, o)) continue;
+        for (uint32_t a = 0; a < 3; a++) {
+            node->lo[a][o] -= pad;
+            node->hi[a][o] += pad;
+            width[a] = (double)node->hi[a][o] - (double)node->lo[a][o];
+        }
+        sum += width[0] * width[1] + width[1] * width[2] + width[2] * width[0];
+    }
+    for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
+        if (is_there(node, o) && !(node->child[o] & RGI_MESH_LEAF)) sum += settle(mesh, node->child[o], pad);
+    }
+    return sum;
+}
+
+/* Half the area of the box around all children of the root. */
+static double area_of_root(const rgi_mesh *mesh) {
+    const rgi_mesh_node *node = rgi_mesh_at(mesh, mesh->root);
+    double width[3];
+    for (int a = 0; a < 3; a++) {
+        float lo = (float)INFINITY, hi = -(float)INFINITY;
+        for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
+            lo = node->lo[a][o] < lo ? node->lo[a][o] : lo;
+            hi = node->hi[a][o] > hi ? node->hi[a][o] : hi;
+        }
+        width[a] = (double)hi - (double)lo;
+    }
+    return width[0] * width[1] + width[1] * width[2] + width[2] * width[0];
+}
+
+double rgi_mesh_settle(rgi_mesh *mesh, float pad) {
+    if (mesh->root & RGI_MESH_LEAF) return 1;
+    double sum = settle(mesh, mesh->root, pad), area = area_of_root(mesh);
+    return area > 0 ? 1 + sum / area : 1;
+}
+
+/* ---------------------------------------------------------------------------------------- new vertices */
 
 typedef struct box {
     float lo[3], hi[3];
 } box;
 
-static void grow(box *b, const float *lo, const float *hi, uint32_t apart) {
-    for (uint32_t a = 0; a < 3; a++) {
-        b->lo[a] = lo[a * apart] < b->lo[a] ? lo[a * apart] : b->lo[a];
-        b->hi[a] = hi[a * apart] > b->hi[a] ? hi[a * apart] : b->hi[a];
-    }
-}
-
-static box empty(void) {
-    const float most = (float)INFINITY;
-    return (box){{most, most, most}, {-most, -most, -most}};
-}
-
-static double half_area(const box *b) {
-    double x = (double)b->hi[0] - (double)b->lo[0], y = (double)b->hi[1] - (double)b->lo[1];
-    double z = (double)b->hi[2] - (double)b->lo[2];
-    return x * y + y * z + z * x;
-}
-
-/* Of all vertices of a leaf, without a pad. What is not used repeats others, or is NaN and does not count. */
-static box box_of_leaf(const rgi_mesh *mesh, const void *leaf) {
-    box b = empty();
-    const float *at = mesh->soup ? ((const rgi_soup_leaf *)leaf)->at[0][0] : ((const rgi_mesh_leaf *)leaf)->at[0];
-    const uint32_t count = mesh->soup ? RGI_SOUP_LEAF : RGI_LEAF, times = mesh->soup ? 3 : 1;
-    for (uint32_t n = 0; n < times; n++) {
-        for (uint32_t k = 0; k < count; k++) grow(&b, at + (3 * n) * count + k, at + (3 * n) * count + k, count);
-    }
-    return b;
-}
-
-/* Adds what is looked into below. */
-static box fit(const rgi_mesh *mesh, rgi_mesh_ref ref, double *cost) {
-    if (ref & RGI_MESH_LEAF) {
-        box b = box_of_leaf(mesh, rgi_mesh_at(mesh, ref));
-        for (int a = 0; a < 3; a++) {
-            b.lo[a] -= mesh->pad;
-            b.hi[a] += mesh->pad;
-        }
-        *cost += half_area(&b);
-        return b;
-    }
-    rgi_mesh_node *node = rgi_mesh_at(mesh, ref);
-    box all = empty();
-    for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
-        if (node->lo[0][o] > node->hi[0][o]) continue; /* there is none */
-        box child = fit(mesh, node->child[o], cost);
-        for (int a = 0; a < 3; a++) {
-            node->lo[a][o] = child.lo[a];
-            node->hi[a][o] = child.hi[a];
-        }
-        grow(&all, child.lo, child.hi, 1);
-    }
-    *cost += half_area(&all);
-    return all;
-}
-
-double rgi_mesh_fit(rgi_mesh *mesh) {
-    double cost = 0;
-    box all = fit(mesh, mesh->root, &cost);
-    double area = half_area(&all);
-    return area > 0 ? cost / area : 1;
-}
-
-/* ---------------------------------------------------------------------------------------- new vertices */
-
-/* New numbers in the leaves of a mesh, and the box of all. */
+/* A tree, taken over with other vertices. */
 typedef struct refill {
+    const rgi_mesh *old;
     rgi_mesh *mesh;
-    const rg_mesh_views *views;
+    const rg_input3 *vertices;
 } refill;
 
-static rg_result corners_of(const refill *r, uint32_t triangle, uint32_t corners[3]) {
-    uint64_t given[3] = {3ull * triangle, 3ull * triangle + 1, 3ull * triangle + 2};
-    if (r->views->indices.x) rgi_load3_integer(&r->views->indices, triangle, given);
-    for (int c = 0; c < 3; c++) {
-        if (given[c] >= r->mesh->vertex_count) return rgi_fail_index(given[c], triangle, c, r->mesh->vertex_count);
-        corners[c] = (uint32_t)given[c];
-    }
-    return RG_OK;
-}
-
-/* A vertex, into the mesh's box and the frame. */
-static void load_vertex(const refill *r, uint32_t vertex, float *to, uint32_t apart) {
-    rgi_mesh *mesh = r->mesh;
+/* A vertex in the frame. */
+static inline void load_vertex(const refill *r, uint32_t vertex, float *to, uint32_t apart) {
+    const rgi_mesh *mesh = r->mesh;
     double v[3];
-    rgi_load3(&r->views->vertices, vertex, v);
-    if (!mesh->vertices) rgi_grow(mesh->lo, mesh->hi, v, v);
-    for (uint32_t a = 0; a < 3; a++) to[a * apart] = (float)((v[a] - mesh->origin[a]) * mesh->scale);
+    if (mesh->vertices) {
+        for (uint32_t a = 0; a < 3; a++)
+            to[a * apart] = (float)((mesh->vertices[vertex][a] - mesh->origin[a]) * mesh->scale);
+        return;
+    }
+    rgi_load3(r->vertices, vertex, v);
+    for (uint32_t a = 0; a < 3; a++) to[a * apart] = (float)v[a];
 }
 
-static rg_result refill_leaf(const refill *r, rgi_mesh_leaf *leaf) {
-    uint32_t numbers[RGI_LEAF];
-    memset(numbers, 0xFF, sizeof numbers); /* no vertex has that number */
-    for (uint32_t t = 0; t < leaf->triangles; t++) {
-        uint32_t corners[3];
-        rg_result result = corners_of(r, leaf->primitive[t], corners);
-        if (result) return result;
-        for (int c = 0; c < 3; c++) {
-            uint32_t vertex = corners[c], lane = leaf->corner[c][t];
-            if (numbers[lane] == vertex) continue;
-            if (numbers[lane] != UINT32_MAX)
-                return rgi_fail(RG_INVALID_VALUE, "triangle %u does not have the corners that it was made with",
-                                leaf->primitive[t]);
-            numbers[lane] = vertex;
-            load_vertex(r, vertex, &leaf->at[0][lane], RGI_LEAF);
-        }
-    }
+static void refill_leaf(const refill *r, const rgi_mesh_leaf *old, rgi_mesh_leaf *leaf) {
+    const uint32_t *numbers = r->mesh->numbers[old->number];
+    *leaf = *old;
+    for (uint32_t k = 0; k < leaf->vertices; k++) load_vertex(r, numbers[k], &leaf->at[0][k], RGI_LEAF);
     for (int a = 0; a < 3; a++) {
         for (uint32_t k = leaf->vertices; k < RGI_LEAF; k++) leaf->at[a][k] = leaf->at[a][0];
     }
-    leaf->longest = rgi_leaf_longest(leaf);
-    return RG_OK;
 }
 
-static rg_result refill_soup(const refill *r, rgi_soup_leaf *leaf) {
+static void refill_soup(const refill *r, const rgi_soup_leaf *old, rgi_soup_leaf *leaf) {
+    *leaf = *old;
     for (uint32_t t = 0; t < RGI_SOUP_LEAF && leaf->primitive[t] != RGI_NO_TRIANGLE; t++) {
-        uint32_t corners[3];
-        rg_result result = corners_of(r, leaf->primitive[t], corners);
-        if (result) return result;
-        for (int c = 0; c < 3; c++) load_vertex(r, corners[c], &leaf->at[c][0][t], RGI_SOUP_LEAF);
+        for (uint32_t c = 0; c < 3; c++)
+            load_vertex(r, rgi_mesh_vertex(r->mesh, leaf, t, c), &leaf->at[c][0][t], RGI_SOUP_LEAF);
     }
-    return RG_OK;
 }
 
-static rg_result refill_below(const refill *r, rgi_mesh_ref ref) {
+static void refill_below(const refill *r, rgi_mesh_ref ref, box *out);
+
+/* Boxes are without a pad at first. */
+static void refill_node(const refill *r, const rgi_mesh_node *old, rgi_mesh_node *node, box *out) {
+    const float most = (float)INFINITY;
+    *node = *old;
+    *out = (box){{most, most, most}, {-most, -most, -most}};
+    for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
+        box child;
+        if (!is_there(node, o)) continue;
+        refill_below(r, node->child[o], &child);
+        for (uint32_t a = 0; a < 3; a++) {
+            node->lo[a][o] = child.lo[a];
+            node->hi[a][o] = child.hi[a];
+            out->lo[a] = child.lo[a] < out->lo[a] ? child.lo[a] : out->lo[a];
+            out->hi[a] = child.hi[a] > out->hi[a] ? child.hi[a] : out->hi[a];
+        }
+    }
+}
+
+static void refill_below(const refill *r, rgi_mesh_ref ref, box *out) {
+    const void *old = rgi_mesh_at(r->old, ref);
     void *at = rgi_mesh_at(r->mesh, ref);
-    rg_result result = RG_OK;
-    if (ref & RGI_MESH_LEAF) return r->mesh->soup ? refill_soup(r, at) : refill_leaf(r, at);
-    const rgi_mesh_node *node = at;
-    for (uint32_t o = 0; o < RGI_CHILDREN && !result; o++) {
-        if (node->lo[0][o] <= node->hi[0][o]) result = refill_below(r, node->child[o]);
+    if (!(ref & RGI_MESH_LEAF)) {
+        refill_node(r, old, at, out);
+        return;
     }
-    return result;
+    if (r->mesh->soup)
+        refill_soup(r, old, at);
+    else
+        refill_leaf(r, old, at);
+    r->mesh->kernels->measure_leaf(r->mesh, at, out->lo, out->hi);
 }
 
-/* The vertices that are kept in double, and the frame around them. */
-static rg_result refill_vertices(const refill *r) {
+/* The vertices that are kept in double, the box of those that triangles use, and the frame around it. */
+static void refill_vertices(const refill *r) {
     rgi_mesh *mesh = r->mesh;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++) rgi_load3(&r->views->vertices, i, mesh->vertices[i]);
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        rg_result result = corners_of(r, t, mesh->corners[t]);
-        if (result) return result;
-        for (int c = 0; c < 3; c++) {
-            const double *v = mesh->vertices[mesh->corners[t][c]];
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) rgi_load3(r->vertices, i, mesh->vertices[i]);
+    rgi_empty_box(mesh->lo, mesh->hi);
+    for (uint32_t l = 0; l < mesh->leaf_count; l++) {
+        for (uint32_t k = 0; k < RGI_LEAF; k++) {
+            const double *v = mesh->vertices[mesh->numbers[l][k]];
+            rgi_grow(mesh->lo, mesh->hi, v, v);
+        }
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count && mesh->soup; t++) {
+        for (uint32_t c = 0; c < 3; c++) {
+            const double *v = mesh->vertices[mesh->corners ? mesh->corners[t][c] : 3 * t + c];
             rgi_grow(mesh->lo, mesh->hi, v, v);
         }
     }
     rgi_mesh_set_frame(mesh);
+}
+
+/* False if the frame of floats does not fit. */
+static bool refill_mesh(const refill *r) {
+    rgi_mesh *mesh = r->mesh;
+    box all;
+    if (mesh->vertices) refill_vertices(r);
+    refill_below(r, mesh->root, &all);
+    if (mesh->vertices) return true;
+    for (int a = 0; a < 3; a++) {
+        mesh->lo[a] = (double)all.lo[a];
+        mesh->hi[a] = (double)all.hi[a];
+    }
+    rgi_mesh_set_frame(mesh);
+    return rgi_mesh_fits_floats(mesh);
+}
+
+/* An array of the old mesh, copied if there is one. */
+static rg_result copy_array(rgi_memory *memory, const void *old, uint64_t count, size_t size, void *out) {
+    void *copy;
+    if (!old) return RG_OK;
+    rg_result result = rgi_allocate(memory, count, size, "a mesh", &copy);
+    if (result) return result;
+    memcpy(copy, old, count * size);
+    memcpy(out, &copy, sizeof copy);
     return RG_OK;
 }
 
-/* A copy without what is in the leaves' coordinates, and without triangles and vertices. */
-static rg_result copy_tree(rgi_memory *memory, const rgi_mesh *old, rgi_mesh **out) {
+/* A copy with room for the tree and the vertices, which are not there yet. */
+static rg_result copy_mesh(rgi_memory *memory, const rgi_mesh *old, rgi_mesh **out) {
     rgi_mesh *mesh;
     rg_result result = rgi_allocate(memory, 1, sizeof *mesh, "a mesh", &mesh);
     if (result) return result;
@@ -177,43 +192,37 @@ static rg_result copy_tree(rgi_memory *memory, const rgi_mesh *old, rgi_mesh **o
     mesh->memory = memory;
     mesh->lines = NULL;
     mesh->vertices = NULL;
+    mesh->numbers = NULL;
     mesh->corners = NULL;
     *out = mesh;
     result = rgi_allocate(memory, mesh->line_count, RGI_MESH_LINE, "a mesh's tree", &mesh->lines);
     if (!result && old->vertices)
         result =
             rgi_allocate(memory, mesh->vertex_count, sizeof *mesh->vertices, "a mesh's vertices", &mesh->vertices);
-    if (!result && old->vertices)
-        result =
-            rgi_allocate(memory, mesh->triangle_count, sizeof *mesh->corners, "a mesh's triangles", &mesh->corners);
-    if (!result) memcpy(mesh->lines, old->lines, (size_t)mesh->line_count * RGI_MESH_LINE);
+    if (!result)
+        result = copy_array(memory, old->numbers, mesh->leaf_count, sizeof *mesh->numbers, &mesh->numbers);
+    if (!result)
+        result = copy_array(memory, old->corners, mesh->triangle_count, sizeof *mesh->corners, &mesh->corners);
     return result;
 }
 
 rg_result rgi_mesh_deform(rgi_memory *memory, const rgi_mesh *old, const rgi_mesh_making *how,
                           const rg_mesh_views *views, rgi_mesh **out) {
     rgi_mesh *mesh = NULL;
-    bool exact;
-    if (views->triangle_count != old->triangle_count || views->vertex_count != old->vertex_count)
-        return rgi_fail(RG_INVALID_VALUE,
-                        "%" PRIu64 " triangles of %" PRIu64 " vertices can't take the place of %u of %u",
-                        views->triangle_count, views->vertex_count, old->triangle_count, old->vertex_count);
-    rg_result result = rgi_mesh_check(views, &exact);
+    bool floats;
+    if (views->vertex_count != old->vertex_count)
+        return rgi_fail(RG_INVALID_VALUE, "%" PRIu64 " vertices can't take the place of %u", views->vertex_count,
+                        old->vertex_count);
+    rg_result result = rgi_mesh_check(views, &floats);
     if (result) return result;
-    if (exact != !old->vertices) return rgi_mesh_create(memory, views, how, out);
-    result = copy_tree(memory, old, &mesh);
-    if (!result) {
-        const refill r = {mesh, views};
-        rgi_empty_box(mesh->lo, mesh->hi);
-        if (!exact) result = refill_vertices(&r);
-        if (!result) result = refill_below(&r, mesh->root);
-        if (!result && exact) rgi_mesh_set_frame(mesh);
-    }
-    bool worn = !result && rgi_mesh_fit(mesh) > WORN * mesh->cost;
-    if (!result && !worn) {
+    if (!floats && !old->vertices) return rgi_mesh_create(memory, views, how, old, out);
+    result = copy_mesh(memory, old, &mesh);
+    const refill r = {old, mesh, &views->vertices};
+    bool fits = !result && refill_mesh(&r) && rgi_mesh_settle(mesh, mesh->pad) <= WORN * mesh->cost;
+    if (fits) {
         *out = mesh;
         return RG_OK;
     }
     rgi_mesh_destroy(mesh);
-    return worn ? rgi_mesh_create(memory, views, how, out) : result;
+    return result ? result : rgi_mesh_create(memory, views, how, old, out);
 }

@@ -17,6 +17,7 @@ enum {
 typedef struct writer {
     const rgi_making *making;
     uint64_t lines;
+    uint32_t leaves;
 } writer;
 
 typedef struct child {
@@ -52,6 +53,7 @@ static void count_lines(writer *w, const rgi_branch *b) {
     const rgi_branch *children[RGI_CHILDREN];
     if (is_leaf(b)) {
         w->lines += LEAF_LINES;
+        w->leaves++;
         return;
     }
     uint32_t count = gather_children(w->making, b, children);
@@ -69,19 +71,6 @@ static uint8_t lane_of(rgi_mesh_leaf *leaf, uint32_t numbers[RGI_LEAF], uint32_t
     return (uint8_t)leaf->vertices++;
 }
 
-float rgi_leaf_longest(const rgi_mesh_leaf *leaf) {
-    float longest = 0;
-    for (uint32_t t = 0; t < leaf->triangles; t++) {
-        for (int a = 0; a < 3; a++) {
-            for (int c = 0; c < 3; c++) {
-                float d = leaf->at[a][leaf->corner[c][t]] - leaf->at[a][leaf->corner[(c + 1) % 3][t]];
-                longest = fabsf(d) > longest ? fabsf(d) : longest;
-            }
-        }
-    }
-    return longest * (1 + 0x1p-20f);
-}
-
 /* The number of the triangle of an item. */
 static uint32_t number_of(const rgi_item *item) {
     uint32_t number;
@@ -89,9 +78,10 @@ static uint32_t number_of(const rgi_item *item) {
     return number;
 }
 
-static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf) {
-    uint32_t numbers[RGI_LEAF];
+static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf, uint32_t number) {
+    uint32_t *numbers = m->mesh->numbers[number];
     memset(leaf, 0, sizeof *leaf);
+    leaf->number = number;
     leaf->triangles = (uint16_t)b->count;
     for (uint32_t t = 0; t < b->count; t++) {
         leaf->primitive[t] = number_of(&m->items[b->first + t]);
@@ -102,7 +92,6 @@ static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *
     for (int a = 0; a < 3; a++) {
         for (int k = 0; k < RGI_LEAF; k++) leaf->at[a][k] = m->at[numbers[k]][a];
     }
-    leaf->longest = rgi_leaf_longest(leaf);
 }
 
 /* Lanes that hold no triangle are NaN, which no comparison lets pass. */
@@ -114,33 +103,6 @@ static void write_soup_leaf(const rgi_making *m, const rgi_branch *b, rgi_soup_l
             for (int a = 0; a < 3; a++)
                 leaf->at[c][a][t] = used ? m->at[m->triangles[leaf->primitive[t]][c]][a] : (float)NAN;
         }
-    }
-}
-
-/* Grows a box by `count` points, whose coordinates along each axis are an array, `count` floats after the last. */
-static void grow_by_points(child *c, const float *at, uint32_t count) {
-    for (uint32_t a = 0; a < 3; a++) {
-        for (uint32_t k = 0; k < count; k++) {
-            float x = at[a * count + k];
-            c->lo[a] = x < c->lo[a] ? x : c->lo[a];
-            c->hi[a] = x > c->hi[a] ? x : c->hi[a];
-        }
-    }
-}
-
-static void box_of_leaf(const rgi_mesh *mesh, const void *leaf, child *out) {
-    for (int a = 0; a < 3; a++) {
-        out->lo[a] = (float)INFINITY;
-        out->hi[a] = -(float)INFINITY;
-    }
-    if (mesh->soup) {
-        for (int c = 0; c < 3; c++) grow_by_points(out, ((const rgi_soup_leaf *)leaf)->at[c][0], RGI_SOUP_LEAF);
-    } else {
-        grow_by_points(out, ((const rgi_mesh_leaf *)leaf)->at[0], RGI_LEAF);
-    }
-    for (int a = 0; a < 3; a++) {
-        out->lo[a] -= mesh->pad;
-        out->hi[a] += mesh->pad;
     }
 }
 
@@ -227,8 +189,12 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
         if (mesh->soup)
             write_soup_leaf(w->making, b, leaf);
         else
-            write_leaf(w->making, b, leaf);
-        box_of_leaf(mesh, leaf, out);
+            write_leaf(w->making, b, leaf, w->leaves++);
+        mesh->kernels->measure_leaf(mesh, leaf, out->lo, out->hi);
+        for (int a = 0; a < 3; a++) {
+            out->lo[a] -= mesh->pad;
+            out->hi[a] += mesh->pad;
+        }
         return;
     }
     child children[RGI_CHILDREN];
@@ -248,15 +214,20 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
 
 rg_result rgi_lines_make(const rgi_making *making) {
     rgi_mesh *mesh = making->mesh;
-    writer w = {making, 0};
+    writer w = {making, 0, 0};
     child root;
     count_lines(&w, making->branches);
     if (w.lines > MOST_LINES)
         return rgi_fail(RG_LIMIT_EXCEEDED, "the mesh is too large: %u triangles", mesh->triangle_count);
     mesh->line_count = (uint32_t)w.lines;
     rg_result result = rgi_allocate(mesh->memory, mesh->line_count, RGI_MESH_LINE, "a mesh's tree", &mesh->lines);
+    if (!result && !mesh->soup) {
+        mesh->leaf_count = w.leaves;
+        result =
+            rgi_allocate(mesh->memory, mesh->leaf_count, sizeof *mesh->numbers, "a mesh's leaves", &mesh->numbers);
+    }
     if (result) return result;
-    w.lines = 0;
+    w.lines = w.leaves = 0;
     write_lines(&w, making->branches, &root);
     mesh->root = root.ref;
     return RG_OK;

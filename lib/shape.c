@@ -21,7 +21,7 @@
 #define rgi_capsule_intersect(capsule, ray, candidate) false
 #endif
 #if defined(RGI_NO_MESH)
-#define rgi_mesh_create(memory, views, how, mesh) RG_OK
+#define rgi_mesh_create(memory, views, how, like, mesh) RG_OK
 #define rgi_mesh_deform(memory, old, how, views, mesh) RG_OK
 #define rgi_mesh_destroy(mesh) ((void)0)
 #define rgi_mesh_intersect(mesh, ray, candidate) false
@@ -306,20 +306,23 @@ rg_result rg_shape_create_capsule(const rg_shape_config *config, const double a[
     return RG_OK;
 }
 
-static rg_result check_mesh(const rg_mesh_views *v) {
+static rg_result check_vertices(const rg_mesh_views *v) {
     rg_result result =
         rgi_check_view3(v->vertices.x, v->vertices.y, v->vertices.z, v->vertices.type, RGI_FLOATS, 1, "vertices");
-    if (!result)
-        result =
-            rgi_check_view3(v->indices.x, v->indices.y, v->indices.z, v->indices.type, RGI_INDICES, 0, "indices");
+    if (result) return result;
+    if (v->vertex_count >= UINT32_MAX)
+        return rgi_fail(RG_LIMIT_EXCEEDED, "vertex_count is %" PRIu64 ", not below 2^32 - 1", v->vertex_count);
+    return v->vertex_count ? RG_OK : rgi_fail(RG_INVALID_VALUE, "vertex_count is 0");
+}
+
+static rg_result check_triangles(const rg_mesh_views *v) {
+    rg_result result =
+        rgi_check_view3(v->indices.x, v->indices.y, v->indices.z, v->indices.type, RGI_INDICES, 0, "indices");
     if (result) return result;
     if (v->triangle_count == 0)
         return rgi_fail(RG_INVALID_VALUE, "triangle_count is 0: a mesh has a triangle at least");
     if (v->triangle_count >= 1u << 31)
         return rgi_fail(RG_LIMIT_EXCEEDED, "triangle_count is %" PRIu64 ", not below 2^31", v->triangle_count);
-    if (v->vertex_count >= UINT32_MAX)
-        return rgi_fail(RG_LIMIT_EXCEEDED, "vertex_count is %" PRIu64 ", not below 2^32 - 1", v->vertex_count);
-    if (v->vertex_count == 0) return rgi_fail(RG_INVALID_VALUE, "vertex_count is 0");
     if (!v->indices.x && v->triangle_count != v->vertex_count / 3)
         return rgi_fail(RG_INVALID_VALUE,
                         "triangle_count is %" PRIu64 ", but %" PRIu64 " vertices without indices make %" PRIu64,
@@ -352,13 +355,14 @@ static rg_result create_mesh(const rg_shape_config *config, const rgi_mesh *old,
     rg_shape *shape = NULL;
     if (!given) return rgi_fail(RG_INVALID_ARGUMENT, "views is NULL");
     rg_result result = rgi_struct_read(&views, sizeof views, MESH_LEAST, given, "rg_mesh_views");
-    if (!result) result = check_mesh(&views);
+    if (!result) result = check_vertices(&views);
+    if (!result && !old) result = check_triangles(&views);
     if (!result) result = out ? RG_OK : rgi_fail(RG_INVALID_ARGUMENT, "shape is NULL: nowhere to return it");
     if (!result) result = read_making(config, &how);
     if (!result) result = shape_new(config, RG_SHAPE_MESH, &shape);
     if (!result)
         result = old ? rgi_mesh_deform(&shape->memory, old, &how, &views, &shape->of.mesh)
-                     : rgi_mesh_create(&shape->memory, &views, &how, &shape->of.mesh);
+                     : rgi_mesh_create(&shape->memory, &views, &how, NULL, &shape->of.mesh);
     if (result) {
         rg_shape_release(&shape);
         return result;

@@ -77,15 +77,17 @@ static void mesh_free(mesh_data *data) {
 #else
 static rg_result mesh_copy(rgi_memory *memory, const rgi_mesh *mesh, mesh_data *data) {
     data->memory = memory;
-    data->vertex_count = (uint32_t)rgi_mesh_read_vertices(mesh);
+    data->vertex_count = mesh->vertex_count;
     data->triangle_count = mesh->triangle_count;
     rg_result result =
         rgi_allocate(memory, data->vertex_count, sizeof *data->vertices, "writing a mesh", &data->vertices);
     if (!result)
         result =
             rgi_allocate(memory, data->triangle_count, sizeof *data->triangles, "writing a mesh", &data->triangles);
-    if (!result) rgi_mesh_read(mesh, data->vertices, data->triangles);
-    return result;
+    if (result) return result;
+    rgi_mesh_read_vertices(mesh, data->vertices);
+    rgi_mesh_read_triangles(mesh, data->triangles);
+    return RG_OK;
 }
 #endif
 

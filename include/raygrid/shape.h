@@ -107,19 +107,19 @@ typedef struct rg_mesh_views {
  * Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE (a vertex that is not finite or beyond RG_COORDINATE_MAX, an index
  * without a vertex; the message names its number), RG_LIMIT_EXCEEDED, RG_OUT_OF_MEMORY, RG_OUT_OF_THREADS.
  * Cost: O(n log n) for n triangles; while it is made up to 250 bytes a triangle. What it holds of a triangle: some 30
- * bytes where triangles share vertices, 50 where they do not; for vertices in double, or in float beyond 2^40 or all
- * below 2^-40, 12 bytes more, and 24 a vertex.
+ * bytes where triangles share vertices, 50 where they do not, 62 where these have indices; and 24 bytes a vertex if
+ * not all are floats, given in whichever type, or if the largest coordinate is beyond 2^40 or below 2^-40.
  */
 RG_API rg_result rg_shape_create_mesh(const rg_shape_config *config, const rg_mesh_views *views, rg_shape **shape);
 
 /**
  * A mesh of the triangles of another one with new vertices, for meshes that change their form: made much faster than
- * by rg_shape_create_mesh. `views` as there, with the counts and indices that `mesh` was made with. `mesh` stays as
- * it is, and may be released afterwards; rg_scene_replace_shape puts the new one in its place. What finds the
- * triangles is taken over and fitted, unless triangles have moved so much against each other, in this and earlier
- * such steps, that rays would cost half as much again: then it is made anew, as config says. No answer depends on
- * which of the two. Errors: as rg_shape_create_mesh; RG_INVALID_ARGUMENT: `mesh` is no mesh; RG_INVALID_VALUE: other
- * counts, or indices by which triangles share vertices in another way. Cost: linear.
+ * by rg_shape_create_mesh. Of `views` only the vertices are read, as many as `mesh` has: the triangles are those of
+ * `mesh`, which stays as it is and may be released afterwards; rg_scene_replace_shape puts the new one in its place.
+ * What finds the triangles is taken over and fitted, unless triangles have moved so much against each other, in this
+ * and earlier such steps, that rays would cost half as much again: then it is made anew, as config says. No answer
+ * depends on which of the two. Errors: as rg_shape_create_mesh; RG_INVALID_ARGUMENT: `mesh` is no mesh;
+ * RG_INVALID_VALUE: another number of vertices. Cost: linear.
  */
 RG_API rg_result rg_shape_create_deformed(const rg_shape_config *config, const rg_shape *mesh,
                                           const rg_mesh_views *views, rg_shape **shape);

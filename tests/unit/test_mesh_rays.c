@@ -64,36 +64,53 @@ static void close_surface(void) {
 
 typedef struct source {
     float floats[VERTICES][3], soup[3 * TRIANGLES][3];
+    double doubles[VERTICES + 1][3];
+    uint32_t order[TRIANGLES][3];
     rg_mesh_views views;
 } source;
 
 static source given;
 
-/* The surface, as a mesh of floats, of doubles, or of triangles that share nothing. */
+enum { FLOATS, DOUBLES, FLOATS_AS_DOUBLES, SOUP, SOUP_WITH_INDICES, FORMS };
+
+/* Triangles that share nothing, from the first to the last or the other way round. */
+static void set_soup(rg_mesh_views *v, bool backward) {
+    for (uint32_t i = 0; i < TRIANGLES; i++) {
+        uint32_t at = 3 * (backward ? TRIANGLES - 1 - i : i);
+        for (uint32_t c = 0; c < 3; c++) {
+            memcpy(given.soup[at + c], given.floats[triangles[i][c]], 12);
+            given.order[i][c] = at + c;
+        }
+    }
+    memset(&v->indices, 0, sizeof v->indices);
+    if (backward) v->indices = rg_input3_packed(given.order, sizeof given.order[0], RG_U32);
+    v->vertices = rg_input3_packed(given.soup, sizeof given.soup[0], RG_F32);
+    v->vertex_count = 3 * TRIANGLES;
+}
+
 static const rg_mesh_views *views_of(int form) {
     rg_mesh_views *v = &given.views;
     memset(v, 0, sizeof *v);
     v->size = sizeof *v;
     v->triangle_count = TRIANGLES;
+    memcpy(given.doubles, vertices, sizeof vertices);
+    /* Of no triangle, and no float: so all are kept in double. */
+    for (int a = 0; a < 3; a++) given.doubles[VERTICES][a] = 0.1;
     for (int i = 0; i < VERTICES; i++) {
         for (int a = 0; a < 3; a++) given.floats[i][a] = (float)vertices[i][a];
     }
-    for (int i = 0; i < 3 * TRIANGLES; i++) memcpy(given.soup[i], given.floats[triangles[i / 3][i % 3]], 12);
     v->indices = rg_input3_packed(triangles, sizeof triangles[0], RG_U32);
-    v->vertex_count = VERTICES;
-    if (form == 0) v->vertices = rg_input3_packed(given.floats, sizeof given.floats[0], RG_F32);
-    if (form == 1) v->vertices = rg_input3_packed(vertices, sizeof vertices[0], RG_F64);
-    if (form < 2) return v;
-    memset(&v->indices, 0, sizeof v->indices);
-    v->vertices = rg_input3_packed(given.soup, sizeof given.soup[0], RG_F32);
-    v->vertex_count = 3 * TRIANGLES;
+    v->vertex_count = VERTICES + (form == DOUBLES);
+    v->vertices = rg_input3_packed(given.doubles, sizeof given.doubles[0], RG_F64);
+    if (form == FLOATS) v->vertices = rg_input3_packed(given.floats, sizeof given.floats[0], RG_F32);
+    if (form >= SOUP) set_soup(v, form == SOUP_WITH_INDICES);
     return v;
 }
 
 static rgi_mesh *mesh_of(int form) {
     rgi_mesh *mesh;
     rgi_memory_init(&memory, NULL);
-    ck_assert_int_eq(rgi_mesh_create(&memory, views_of(form), NULL, &mesh), RG_OK);
+    ck_assert_int_eq(rgi_mesh_create(&memory, views_of(form), NULL, NULL, &mesh), RG_OK);
     return mesh;
 }
 
@@ -177,7 +194,7 @@ enum { PLACE_COUNT = sizeof PLACES / sizeof *PLACES };
 START_TEST(every_kernel_finds_what_testing_all_finds) {
     for (int place = 0; place < PLACE_COUNT; place++) {
         make_surface(PLACES[place].centre, PLACES[place].size, PLACES[place].stretched, place);
-        for (int form = 0; form < 3; form++) {
+        for (int form = 0; form < FORMS; form++) {
             rgi_mesh *mesh = mesh_of(form);
             for (int k = 0; k < MACHINE_KERNELS; k++) {
                 if (!machine_can_run(machine_kernels[k])) continue;
@@ -196,20 +213,44 @@ END_TEST
 
 START_TEST(the_form_of_the_data_changes_no_bit) {
     make_surface(PLACES[1].centre, 1, 1, 0);
-    rgi_mesh *mesh[3];
-    for (int form = 0; form < 3; form++) mesh[form] = mesh_of(form);
+    rgi_mesh *mesh[FORMS];
+    for (int form = 0; form < FORMS; form++) mesh[form] = mesh_of(form);
     for (int i = 0; i < ROUNDS; i++) {
         rgi_local_ray ray = local_ray(PLACES[1].centre, 1);
-        rgi_candidate c[3];
-        bool hit[3];
-        for (int form = 0; form < 3; form++) hit[form] = rgi_mesh_intersect(mesh[form], &ray, &c[form]);
-        for (int form = 1; form < 3; form++) {
+        rgi_candidate c[FORMS];
+        bool hit[FORMS];
+        for (int form = 0; form < FORMS; form++) hit[form] = rgi_mesh_intersect(mesh[form], &ray, &c[form]);
+        for (int form = 1; form < FORMS; form++) {
             MUST(hit[form] == hit[0]);
             MUST(!hit[0] || (c[form].t == c[0].t && c[form].primitive == c[0].primitive && c[form].u == c[0].u));
         }
     }
-    ck_assert(!mesh[0]->vertices && mesh[1]->vertices && mesh[2]->soup && !mesh[0]->soup);
-    for (int form = 0; form < 3; form++) rgi_mesh_destroy(mesh[form]);
+    for (int form = 0; form < FORMS; form++) {
+        ck_assert((mesh[form]->vertices != NULL) == (form == DOUBLES));
+        ck_assert(mesh[form]->soup == (form >= SOUP));
+        ck_assert((mesh[form]->corners != NULL) == (form == SOUP_WITH_INDICES));
+    }
+    for (int form = 0; form < FORMS; form++) rgi_mesh_destroy(mesh[form]);
+}
+END_TEST
+
+/* Each vertex that a triangle uses, and all triangles. */
+START_TEST(what_was_given_can_be_read) {
+    static double got[3 * TRIANGLES][3];
+    static uint32_t corners[TRIANGLES][3];
+    make_surface(PLACES[1].centre, 1, 1, 0);
+    for (int form = 0; form < FORMS; form++) {
+        rgi_mesh *mesh = mesh_of(form);
+        memset(corners, 0xFF, sizeof corners);
+        rgi_mesh_read_vertices(mesh, got);
+        rgi_mesh_read_triangles(mesh, corners);
+        for (uint32_t i = 0; i < TRIANGLES; i++) {
+            MUST(memcmp(corners[i], form < SOUP ? triangles[i] : given.order[i], sizeof corners[i]) == 0);
+            for (int c = 0; c < 3; c++)
+                MUST(memcmp(got[corners[i][c]], vertices[triangles[i][c]], sizeof got[0]) == 0);
+        }
+        rgi_mesh_destroy(mesh);
+    }
 }
 END_TEST
 
@@ -228,12 +269,12 @@ static void demand_all_same(const rgi_mesh *one, const rgi_mesh *other, const do
 /* Bent a little the tree is fitted, shuffled it is made anew: either way as if the mesh were new. */
 START_TEST(new_vertices_are_as_a_new_mesh) {
     static const double HOME[3] = {0.5, 0, 0}, AWAY[3] = {2, 1, -1};
-    for (int form = 0; form < 3; form++) {
+    for (int form = 0; form < FORMS; form++) {
         make_surface(HOME, 1, 1, 0);
         rgi_mesh *first = mesh_of(form), *bent, *fresh, *shuffled, *fresh_shuffled;
         make_surface(AWAY, 1.5, 0.8, 1);
         ck_assert_int_eq(rgi_mesh_deform(&memory, first, NULL, views_of(form), &bent), RG_OK);
-        ck_assert_int_eq(rgi_mesh_create(&memory, views_of(form), NULL, &fresh), RG_OK);
+        ck_assert_int_eq(rgi_mesh_create(&memory, views_of(form), NULL, NULL, &fresh), RG_OK);
         ck_assert(bent->cost == first->cost); /* as built, not as it is now */
         ck_assert(memcmp(bent->lo, fresh->lo, sizeof bent->lo) == 0 && memcmp(bent->hi, fresh->hi, 24) == 0);
         demand_all_same(bent, fresh, AWAY, 1.5);
@@ -245,7 +286,7 @@ START_TEST(new_vertices_are_as_a_new_mesh) {
             memcpy(vertices[j], swap, sizeof swap);
         }
         ck_assert_int_eq(rgi_mesh_deform(&memory, bent, NULL, views_of(form), &shuffled), RG_OK);
-        ck_assert_int_eq(rgi_mesh_create(&memory, views_of(form), NULL, &fresh_shuffled), RG_OK);
+        ck_assert_int_eq(rgi_mesh_create(&memory, views_of(form), NULL, NULL, &fresh_shuffled), RG_OK);
         ck_assert(shuffled->cost == fresh_shuffled->cost);
         demand_all_same(shuffled, fresh_shuffled, AWAY, 1.5);
         rgi_mesh *all[] = {first, bent, fresh, shuffled, fresh_shuffled};
@@ -258,20 +299,15 @@ END_TEST
 START_TEST(new_vertices_that_do_not_fit_are_refused) {
     rg_shape *shape, *other = NULL;
     make_surface(PLACES[0].centre, 1, 1, 0);
-    rg_mesh_views views = *views_of(0);
+    rg_mesh_views views = *views_of(FLOATS);
     ck_assert_int_eq(rg_shape_create_mesh(NULL, &views, &shape), RG_OK);
     views.vertex_count--;
     ck_assert_int_eq(rg_shape_create_deformed(NULL, shape, &views, &other), RG_INVALID_VALUE);
-    views = *views_of(0);
+    views = *views_of(FLOATS);
     given.floats[5][1] = NAN;
     ck_assert_int_eq(rg_shape_create_deformed(NULL, shape, &views, &other), RG_INVALID_VALUE);
     ck_assert_ptr_nonnull(strstr(rg_error_message(), "vertex 5 has y = nan"));
-    views = *views_of(0);
-    uint32_t kept = triangles[100][0];
-    triangles[100][0] = VERTICES;
-    ck_assert_int_eq(rg_shape_create_deformed(NULL, shape, &views, &other), RG_INVALID_VALUE);
-    triangles[100][0] = (kept + 200) % VERTICES;
-    ck_assert_int_eq(rg_shape_create_deformed(NULL, shape, &views, &other), RG_INVALID_VALUE);
+    views = *views_of(FLOATS);
     ck_assert_ptr_null(other);
     rg_shape *ball;
     ck_assert_int_eq(rg_shape_create_sphere(NULL, 1, &ball), RG_OK);
@@ -280,6 +316,17 @@ START_TEST(new_vertices_that_do_not_fit_are_refused) {
     ck_assert_int_eq(rg_shape_config_default(&config, sizeof config), RG_OK);
     config.quality = 2;
     ck_assert_int_eq(rg_shape_create_mesh(&config, &views, &other), RG_INVALID_ARGUMENT);
+    config.quality = RG_MESH_FAST;
+    config.workers = 1025;
+    ck_assert_int_eq(rg_shape_create_mesh(&config, &views, &other), RG_INVALID_VALUE);
+    /* The triangles are those of the mesh, whatever the views say. */
+    rg_shape_report report = {.size = sizeof report};
+    memset(&views.indices, 0, sizeof views.indices);
+    views.triangle_count = 0;
+    ck_assert_int_eq(rg_shape_create_deformed(NULL, shape, &views, &other), RG_OK);
+    ck_assert_int_eq(rg_shape_stats(other, &report), RG_OK);
+    ck_assert_uint_eq(report.triangle_count, TRIANGLES);
+    rg_shape_release(&other);
     rg_shape_release(&ball);
     rg_shape_release(&shape);
 }
@@ -306,7 +353,7 @@ START_TEST(who_helps_changes_nothing) {
         {0}, {.workers = 3}, {.parallel_for = run_backward, .parallel_for_user = &jobs}, {.fast = true}};
     rgi_mesh *mesh[4];
     rgi_memory_init(&memory, NULL);
-    for (int i = 0; i < 4; i++) ck_assert_int_eq(rgi_mesh_create(&memory, &views, &ways[i], &mesh[i]), RG_OK);
+    for (int i = 0; i < 4; i++) ck_assert_int_eq(rgi_mesh_create(&memory, &views, &ways[i], NULL, &mesh[i]), RG_OK);
     ck_assert_uint_gt(jobs, 10);
     for (int i = 1; i < 3; i++) {
         ck_assert_uint_eq(mesh[i]->line_count, mesh[0]->line_count);
@@ -405,7 +452,7 @@ START_TEST(together_as_alone) {
     static rg_ray rays[RAYS];
     uint32_t found = 0;
     make_surface(PLACES[0].centre, 1, 1, 0);
-    for (int form = 0; form < 3; form++) {
+    for (int form = 0; form < FORMS; form++) {
         rg_shape *shape;
         ck_assert_int_eq(rg_shape_create_mesh(NULL, views_of(form), &shape), RG_OK);
         for (size_t n = 0; n < sizeof OFFSETS / sizeof *OFFSETS; n++) {
@@ -421,7 +468,7 @@ START_TEST(together_as_alone) {
         }
         rg_shape_release(&shape);
     }
-    ck_assert_uint_gt(found, 3 * 3 * 4 * 3 * RAYS / 3);
+    ck_assert_uint_gt(found, FORMS * 3 * 4 * 3 * RAYS / 3);
 }
 END_TEST
 
@@ -435,7 +482,7 @@ START_TEST(nothing_leaks) {
         rg_scene *scene;
         make_surface(PLACES[0].centre, 1, 1, 0);
         close_surface();
-        rg_mesh_views views = *views_of(1);
+        rg_mesh_views views = *views_of(DOUBLES);
         ck_assert_int_eq(rg_shape_create_mesh(NULL, &views, &shape), RG_OK);
         ck_assert_int_eq(rg_scene_create(NULL, &scene), RG_OK);
         rg_pose pose = rg_pose_at(OFFSETS[n][0], OFFSETS[n][1], OFFSETS[n][2]);
@@ -473,10 +520,10 @@ START_TEST(a_shape_in_place_of_another) {
     rg_hit hit;
     uint32_t found = 0;
     make_surface(PLACES[0].centre, 1, 1, 0);
-    ck_assert_int_eq(rg_shape_create_mesh(NULL, views_of(0), &small), RG_OK);
+    ck_assert_int_eq(rg_shape_create_mesh(NULL, views_of(FLOATS), &small), RG_OK);
     rg_scene *scene = nine_objects(OFFSETS[0], small, ids), *other = nine_objects(OFFSETS[0], small, ids);
     make_surface(PLACES[0].centre, 2, 1, 1);
-    ck_assert_int_eq(rg_shape_create_deformed(NULL, small, views_of(0), &large), RG_OK);
+    ck_assert_int_eq(rg_shape_create_deformed(NULL, small, views_of(FLOATS), &large), RG_OK);
     rg_ray past = rg_ray_from((double[3]){0.1, 1.9, -30}, (double[3]){0, 0, 1});
     ck_assert_int_eq(rg_scene_trace(scene, &past, &hit, 1), RG_OK);
     ck_assert(hit.object == RG_NO_OBJECT);
@@ -516,6 +563,7 @@ Suite *unit_suite(void) {
     tcase_set_timeout(tests, 120);
     tcase_add_test(tests, every_kernel_finds_what_testing_all_finds);
     tcase_add_test(tests, the_form_of_the_data_changes_no_bit);
+    tcase_add_test(tests, what_was_given_can_be_read);
     tcase_add_test(tests, new_vertices_are_as_a_new_mesh);
     tcase_add_test(tests, new_vertices_that_do_not_fit_are_refused);
     tcase_add_test(tests, who_helps_changes_nothing);
