@@ -30,7 +30,7 @@ from ._hits import Hits
 from ._raygrid import lib as _lib
 from ._replay import Call, Replay, Step
 from ._scene import Candidate, Cull, Frame, Isa, ObjectReport, Scene, SceneReport, Without
-from ._shapes import Box, Capsule, Mesh, Shape, Sphere
+from ._shapes import Box, Capsule, Mesh, MeshQuality, Shape, Sphere
 
 __version__ = "{}.{}.{}".format(*(_lib.rg_version() // 1000**place % 1000 for place in (2, 1, 0)))
 
@@ -62,6 +62,7 @@ __all__ = [
     "Isa",
     "LimitExceeded",
     "Mesh",
+    "MeshQuality",
     "NO_OBJECT",
     "NO_PRIMITIVE",
     "ObjectReport",

@@ -30,6 +30,7 @@ class Call(enum.IntEnum):
     GRID_DESTROY = lib.RG_CALL_GRID_DESTROY
     GRID_CONFIGURE = lib.RG_CALL_GRID_CONFIGURE
     GRID_REBUILD = lib.RG_CALL_GRID_REBUILD
+    REPLACE_SHAPE = lib.RG_CALL_REPLACE_SHAPE
 
 
 @dataclass(frozen=True)

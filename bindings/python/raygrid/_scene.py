@@ -355,6 +355,23 @@ class Scene:
         ids = self._ids(objects)
         check(lib.rg_scene_remove_many(handle, self._input(ids), len(ids)))
 
+    def replace_shape(self, old: Shape, new: Shape) -> None:
+        """Gives every object of this scene that has the shape `old` the shape `new`: all, or on any error none.
+
+        Ids, poses and masks stay. So a mesh changes its form:
+
+        >>> import numpy as np
+        >>> from raygrid import Mesh, Scene
+        >>> corners = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], np.float32)
+        >>> flat = Mesh(corners, [[0, 1, 2]])
+        >>> with Scene() as scene:
+        ...     sails = scene.insert(flat, [[0, 0, 5], [4, 0, 5]])
+        ...     scene.replace_shape(flat, flat.deformed(corners - (0, 0, 1)))
+        ...     scene.trace([[0, 0, 0], [4, 0, 0]], (0, 0, 1)).t
+        array([4., 4.])
+        """
+        check(lib.rg_scene_replace_shape(self._open(), old._pointer, new._pointer))
+
     def set_mask(self, object: ArrayLike, mask: int) -> None:
         """Changes which rays see an object: those whose mask shares a bit with this one."""
         check(lib.rg_scene_set_mask(self._open(), self._id(object), mask))

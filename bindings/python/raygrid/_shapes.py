@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Callable
 from typing import Any, NoReturn
 
@@ -38,9 +39,9 @@ class Shape:
     def __init__(self) -> None:
         raise TypeError("shapes are made by Sphere, Box, Capsule or Mesh")
 
-    def _create(self, create: Callable[..., int], *arguments: Any) -> None:
+    def _create(self, create: Callable[..., int], *arguments: Any, config: Any = ffi.NULL) -> None:
         made = ffi.new("rg_shape **")
-        check(create(ffi.NULL, *arguments, made))
+        check(create(config, *arguments, made))
         self._own(made[0])
 
     def _own(self, pointer: Any) -> None:
@@ -127,12 +128,22 @@ class Capsule(Shape):
         self._create(lib.rg_shape_create_capsule, triple(a, "a"), triple(b, "b"), float(radius))
 
 
+class MeshQuality(enum.IntEnum):
+    """How much is done for rays when a mesh is made."""
+
+    BEST = lib.RG_MESH_BEST
+    FAST = lib.RG_MESH_FAST
+
+
 class Mesh(Shape):
     """Triangles. The data is copied.
 
     vertices: (V, 3) float32 or float64.
     indices: three vertices of each triangle, (T, 3) or (3 * T,) of any integer dtype; without them, triangle i has
     the vertices 3 * i, 3 * i + 1 and 3 * i + 2.
+    quality: BEST is what rays go through fastest; FAST is made fastest, for a mesh of which few rays are asked before
+    it changes. No answer depends on it.
+    workers: threads that make it, the calling one among them. They end before the call does.
 
     >>> Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).triangle_count
     1
@@ -140,14 +151,15 @@ class Mesh(Shape):
 
     __slots__ = ()
 
-    def __init__(self, vertices: ArrayLike, indices: ArrayLike | None = None) -> None:
-        corners = _arrays.floats(vertices, "vertices")
-        if corners.ndim != 2 or corners.shape[1] != 3:
-            raise ValueError(f"vertices must have the shape (V, 3), not {_arrays.seen(corners)}")
-        views = ffi.new("rg_mesh_views *", {"size": ffi.sizeof("rg_mesh_views")})
-        lib.py_input3(views, ffi.offsetof("rg_mesh_views", "vertices"), *three(corners))
-        views.vertex_count = len(corners)
-        views.triangle_count = len(corners) // 3
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        indices: ArrayLike | None = None,
+        *,
+        quality: MeshQuality = MeshQuality.BEST,
+        workers: int = 1,
+    ) -> None:
+        views, _kept = _views(vertices)
         if indices is not None:
             triangles = _arrays.unsigned(indices, "indices", INDEX_TYPES)
             if triangles.ndim == 1 and triangles.size % 3 == 0:
@@ -156,7 +168,42 @@ class Mesh(Shape):
                 raise ValueError(f"indices must have the shape (T, 3) or (3 * T,), not {_arrays.seen(triangles)}")
             lib.py_input3(views, ffi.offsetof("rg_mesh_views", "indices"), *three(triangles))
             views.triangle_count = len(triangles)
-        self._create(lib.rg_shape_create_mesh, views)
+        self._create(lib.rg_shape_create_mesh, views, config=_config(quality, workers))
+
+    def deformed(
+        self, vertices: ArrayLike, *, quality: MeshQuality = MeshQuality.BEST, workers: int = 1
+    ) -> Mesh:
+        """A mesh of these triangles with new vertices, made much faster than a new one: (V, 3), V as before.
+
+        This one stays as it is: Scene.replace_shape puts the new one in its place. quality, workers: as for Mesh, for
+        the case that the vertices have moved so much against each other that it is made anew.
+
+        >>> import numpy as np
+        >>> corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+        >>> Mesh(corners, [[0, 1, 2]]).deformed(2 * corners).bounds[1].tolist()
+        [2.0, 2.0, 0.0]
+        """
+        views, _kept = _views(vertices)
+        mesh = Mesh.__new__(Mesh)
+        mesh._create(lib.rg_shape_create_deformed, self._pointer, views, config=_config(quality, workers))
+        return mesh
+
+
+def _views(vertices: ArrayLike) -> tuple[Any, NDArray[Any]]:
+    """Views of the vertices, to which triangles may be added; and what they lead to, to be kept as long."""
+    corners = _arrays.floats(vertices, "vertices")
+    if corners.ndim != 2 or corners.shape[1] != 3:
+        raise ValueError(f"vertices must have the shape (V, 3), not {_arrays.seen(corners)}")
+    views = ffi.new("rg_mesh_views *", {"size": ffi.sizeof("rg_mesh_views")})
+    lib.py_input3(views, ffi.offsetof("rg_mesh_views", "vertices"), *three(corners))
+    views.vertex_count = len(corners)
+    views.triangle_count = len(corners) // 3
+    return views, corners
+
+
+def _config(quality: MeshQuality, workers: int) -> Any:
+    size = ffi.sizeof("rg_shape_config")
+    return ffi.new("rg_shape_config *", {"size": size, "quality": int(quality), "workers": workers})
 
 
 INDEX_TYPES = (np.dtype(np.uint16), _arrays.U32, _arrays.U64)

@@ -66,9 +66,11 @@ def test_arguments_of_calls() -> None:
     # User-defined shapes are not to be had from Python, so nobody numbers them and nobody finds them.
     assert fields("rg_sink") == {"user", "write", "number_shape"}
     assert fields("rg_source") == {"bytes", "byte_count", "user", "find_shape", "shapes"}
-    assert fields("rg_mesh_views", "vertex_count", "triangle_count") == set(
-        inspect.signature(raygrid.Mesh).parameters
-    )
+    making = fields("rg_shape_config", "allocator", "parallel_for", "parallel_for_user")
+    mesh = set(inspect.signature(raygrid.Mesh).parameters)
+    assert mesh == fields("rg_mesh_views", "vertex_count", "triangle_count") | making
+    assert set(inspect.signature(raygrid.Mesh.deformed).parameters) == {"self", "vertices"} | making
+    assert {one.name: one.value for one in raygrid.MeshQuality} == constants("RG_MESH_")
 
 
 def test_version() -> None:

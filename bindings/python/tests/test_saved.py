@@ -18,11 +18,13 @@ import raygrid
 from raygrid import Box, Call, Capsule, GridConfig, GridKind, Mesh, Replay, Scene, Sphere
 from test_process import run
 
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
+SOLID = Mesh(CORNERS, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 SHAPES = [
     Sphere(0.5),
     Box((-1, -0.5, 0), (1, 0.5, 0.25)),
     Capsule((0, 0, 0), (0, 0.3, 1), 0.2),
-    Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]),
+    SOLID,
 ]
 RAYS = np.random.default_rng(3).normal(size=(2, 500, 3)) * 4
 
@@ -102,6 +104,7 @@ def test_recording() -> None:
         grid.rebuild()
         new = scene.insert(SHAPES[1], grid=grid)
         scene.remove(new)
+        scene.replace_shape(SOLID, SOLID.deformed(1.5 * CORNERS))
         scene.record(None)
         scene.record(None)
         want, saved = answers(scene), scene.save()
@@ -115,8 +118,9 @@ def test_recording() -> None:
         Call.GRID_REBUILD,
         Call.INSERT_MANY,
         Call.REMOVE_MANY,
+        Call.REPLACE_SHAPE,
     ]
-    assert [step.calls for step in steps] == list(range(1, 8))
+    assert [step.calls for step in steps] == list(range(1, 9))
     assert (steps[0].objects, steps[0].object, steps[5].object) == (5, ids[0], new[0])
     assert steps[5].grid.stats().objects == 0
     assert answers(replay.scene) == want and replay.scene.save() == saved

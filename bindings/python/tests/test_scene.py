@@ -63,6 +63,34 @@ def test_each_its_own_shape_and_mask() -> None:
         assert (scene.trace(origins, (0, 0, 1), mask=4).object == [ids[0], 0, ids[2], 0]).all()
 
 
+@pytest.mark.parametrize("quality", raygrid.MeshQuality)
+def test_a_mesh_that_changes_its_form(quality: raygrid.MeshQuality) -> None:
+    random = np.random.default_rng(5)
+    corners, places = random.normal(size=(300, 3)), [[0, 0, 0], [9, 0, 0]]
+    flat = corners.astype(np.float32)
+    rays = random.normal(size=(2, 200, 3)) * 3
+    with Scene() as scene, Scene() as other, scene.frame() as frame:
+        mesh = Mesh(corners, quality=quality, workers=2)
+        ids = scene.insert(mesh, places, mask=[1, 2])
+        ball = scene.insert(Sphere(), (0, 9, 0))
+        for step in range(3):
+            new = flat if step == 1 else corners + 0.1 * random.normal(size=corners.shape)
+            bent = mesh.deformed(new, quality=quality)
+            scene.replace_shape(mesh, bent)
+            assert [scene.lookup(one).shape for one in ids] == [bent, bent]
+            assert [scene.lookup(one).mask for one in ids] == [1, 2]
+            assert scene.lookup(ball).shape != bent
+            frame.update()
+            mesh = bent
+            made = Mesh(new)
+            assert (made.bounds == mesh.bounds).all() and made.triangle_count == mesh.triangle_count == 100
+            fresh = other.insert(made, places)
+            want, got = other.trace(*rays), scene.trace(*rays)
+            assert (want.t == np.where(got.object == ball, want.t, got.t)).all() and np.isfinite(want.t).sum() > 20
+            assert (frame.trace(*rays).t == got.t).all()
+            other.remove(fresh)
+
+
 def test_shapes_outlive_their_makers() -> None:
     with Scene() as scene:
         ball = scene.insert(Sphere(3))

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fmt::Debug;
 
 use checks::{bindings, committed, workspace};
-use raygrid::{Call, Coherence, Cull, GridKind, Isa, ShapeKind, Without};
+use raygrid::{Call, Coherence, Cull, GridKind, Isa, MeshQuality, ShapeKind, Without};
 
 fn read(path: std::path::PathBuf) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -41,6 +41,7 @@ fn enums_have_all_values() {
     assert_eq!(values(Coherence::ALL, |coherence| coherence as i32), constants("RG_COHERENCE_"));
     assert_eq!(values(Isa::ALL, |isa| isa as i32), constants("RG_ISA_"));
     assert_eq!(values(ShapeKind::ALL, |kind| kind as i32), constants("RG_SHAPE_"));
+    assert_eq!(values(MeshQuality::ALL, |quality| quality as i32), constants("RG_MESH_"));
     let flags = Without::NAMES.iter().map(|(name, flag)| ((*name).to_owned(), flag.bits() as i32));
     assert_eq!(flags.collect::<BTreeSet<_>>(), constants("RG_WITHOUT_"));
 }

@@ -125,6 +125,8 @@ enumeration! {
         GridConfigure = RG_CALL_GRID_CONFIGURE,
         /// [`Scene::rebuild_grid`](crate::Scene::rebuild_grid).
         GridRebuild = RG_CALL_GRID_REBUILD,
+        /// [`Scene::replace_shape`](crate::Scene::replace_shape).
+        ReplaceShape = RG_CALL_REPLACE_SHAPE,
     }
 }
 
@@ -141,5 +143,15 @@ enumeration! {
         Mesh = RG_SHAPE_MESH,
         /// A [`UserShape`](crate::UserShape).
         User = RG_SHAPE_USER,
+    }
+}
+
+enumeration! {
+    /// How much is done for rays when a mesh is made.
+    MeshQuality, "quality", Best, {
+        /// What rays go through fastest.
+        Best = RG_MESH_BEST,
+        /// What is made fastest: for meshes of which few rays are asked before they change.
+        Fast = RG_MESH_FAST,
     }
 }

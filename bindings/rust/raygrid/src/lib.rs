@@ -8,6 +8,7 @@ mod grid;
 mod hit;
 mod host;
 mod id;
+mod mesh;
 mod pose;
 mod query;
 mod ray;
@@ -28,13 +29,14 @@ mod with_mint;
 #[cfg(feature = "rayon")]
 mod with_rayon;
 
-pub use enums::{Call, Coherence, Cull, GridKind, Isa, ShapeKind};
+pub use enums::{Call, Coherence, Cull, GridKind, Isa, MeshQuality, ShapeKind};
 pub use error::{Error, ErrorKind, Result};
 pub use frame::Frame;
 pub use grid::{GridConfig, GridReport};
 pub use hit::{Hit, NO_PRIMITIVE};
 pub use host::{Builder, ParallelFor};
 pub use id::{GridId, ObjectId};
+pub use mesh::MeshBuilder;
 pub use pose::Pose;
 pub use query::{Query, Traced};
 pub use ray::Ray;

@@ -149,6 +149,13 @@ impl Scene {
         self.changed(check(unsafe { sys::rg_scene_remove(self.raw(), object.to_bits()) }))
     }
 
+    /// Gives every object of this scene that has the shape `old` the shape `new`: all, or on any error none. Ids, poses
+    /// and masks stay: see [`Shape::deformed`].
+    pub fn replace_shape(&self, old: &Shape, new: &Shape) -> Result<()> {
+        // SAFETY: the scene lives as long as self, the shapes as long as their references.
+        self.changed(check(unsafe { sys::rg_scene_replace_shape(self.raw(), old.raw(), new.raw()) }))
+    }
+
     /// What is known of an object.
     pub fn lookup(&self, object: ObjectId) -> Result<ObjectReport> {
         let mut report = sized!(rg_object_report {});

@@ -10,7 +10,7 @@ use raygrid_sys as sys;
 
 use crate::error::check;
 use crate::views::{Indices, Vectors};
-use crate::{Error, ErrorKind, Result, ShapeReport, UserShape, sized, user_shape};
+use crate::{MeshBuilder, Result, ShapeReport, UserShape, sized, user_shape};
 
 /// A shape: sphere, box, capsule, triangle mesh, or one of your own.
 ///
@@ -69,29 +69,41 @@ impl Shape {
     /// # Ok::<(), raygrid::Error>(())
     /// ```
     pub fn mesh<'a>(vertices: impl Into<Vectors<'a>>, triangles: impl Into<Indices<'a>>) -> Result<Self> {
-        let (vertices, triangles) = (vertices.into(), triangles.into());
-        Self::of_mesh(&vertices, Some(&triangles))
+        Self::mesh_builder().mesh(vertices, triangles)
     }
 
     /// A mesh of triangles, each the next three vertices. All is copied.
     pub fn triangles<'a>(vertices: impl Into<Vectors<'a>>) -> Result<Self> {
-        Self::of_mesh(&vertices.into(), None)
+        Self::mesh_builder().triangles(vertices)
     }
 
-    fn of_mesh(vertices: &Vectors<'_>, triangles: Option<&Indices<'_>>) -> Result<Self> {
-        let count = vertices.count().unwrap_or(1);
-        if triangles.is_none() && count % 3 != 0 {
-            let message = format!("{count} vertices are no whole number of triangles");
-            return Err(Error::new(ErrorKind::InvalidArgument, message));
-        }
-        let views = sized!(rg_mesh_views {
-            vertices: vertices.raw(),
-            vertex_count: count as u64,
-            indices: triangles.map(Indices::raw).unwrap_or_default(),
-            triangle_count: triangles.map_or(count / 3, |each| each.count().unwrap_or(1)) as u64,
-        });
-        // SAFETY: the views lead to as many records as they say; `out` is written on success.
-        Self::made(|out| unsafe { sys::rg_shape_create_mesh(ptr::null(), &views, out) })
+    /// A mesh of the triangles of this one with new vertices, as many as it has: made much faster than a new mesh. This
+    /// one stays as it is; [`Scene::replace_shape`](crate::Scene::replace_shape) puts the new one in its place.
+    ///
+    /// ```
+    /// use raygrid::{Ray, Scene, Shape};
+    ///
+    /// let mut corners = [[-1.0_f32, -1.0, 5.0], [1.0, -1.0, 5.0], [0.0, 1.0, 5.0]];
+    /// let mut sail = Shape::triangles(&corners)?;
+    /// let scene = Scene::new()?;
+    /// scene.insert(&sail, [0.0; 3])?;
+    /// for step in 1..4 {
+    ///     corners.iter_mut().for_each(|corner| corner[2] -= 1.0);
+    ///     let bent = sail.deformed(&corners)?;
+    ///     scene.replace_shape(&sail, &bent)?;
+    ///     sail = bent;
+    ///     let hit = scene.trace(&Ray::new([0.0; 3], [0.0, 0.0, 1.0]))?.unwrap();
+    ///     assert_eq!(hit.t, 5.0 - f64::from(step));
+    /// }
+    /// # Ok::<(), raygrid::Error>(())
+    /// ```
+    pub fn deformed<'a>(&self, vertices: impl Into<Vectors<'a>>) -> Result<Self> {
+        Self::mesh_builder().deformed(self, vertices)
+    }
+
+    /// How a mesh is to be made.
+    pub fn mesh_builder() -> MeshBuilder {
+        MeshBuilder::default()
     }
 
     /// A shape of your own.

@@ -139,6 +139,7 @@ fn every_call_is_recorded_and_played() -> Result<()> {
     scene.move_many(&more, &[[0.5, 0.0, 2.0], [1.5, 0.0, 2.0]])?;
     scene.remove(ids[0])?;
     scene.remove_many(&[more[0], ids[1]])?;
+    scene.replace_shape(&scene.shape_of(more[1])?, &Shape::box_between([-0.1; 3], [0.1; 3])?)?;
     scene.end_recording()?;
     scene.remove(ids[2])?; // not recorded either
     scene.end_recording()?; // there is none
@@ -151,6 +152,7 @@ fn every_call_is_recorded_and_played() -> Result<()> {
     assert_eq!(calls, [
         Call::Insert, Call::MoveTo, Call::Move, Call::SetMask, Call::GridCreate, Call::GridConfigure, Call::GridRebuild,
         Call::GridDestroy, Call::InsertMany, Call::MoveMany, Call::Remove, Call::RemoveMany,
+        Call::ReplaceShape,
     ]);
     assert!(Call::ALL[1..].iter().all(|call| calls.contains(call)), "each call is there");
     let names = ["rg_scene_insert", "rg_scene_move_to", "rg_scene_move", "rg_scene_set_mask", "rg_grid_create"];
@@ -158,6 +160,7 @@ fn every_call_is_recorded_and_played() -> Result<()> {
     assert_eq!((steps[0].object, steps[0].objects, steps[0].calls), (Some(ball), 1, 1));
     assert_eq!((steps[4].object, steps[4].grid), (None, grid));
     assert_eq!((steps[11].object, steps[11].objects, steps[11].calls), (Some(more[0]), 2, 12));
+    assert_eq!((steps[12].object, steps[12].objects, steps[12].calls), (Some(more[1]), 1, 13));
     assert!(steps.is_sorted_by_key(|step| step.offset) && replay.step()?.is_none());
 
     let played = replay.into_scene();

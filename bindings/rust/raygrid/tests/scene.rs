@@ -6,7 +6,8 @@ use std::error::Error as _;
 
 use raygrid::views::{Floats, FloatsMut, HitViews, Ids, Poses, RayViews, Vectors, VectorsMut};
 use raygrid::{
-    Cull, ErrorKind, GridConfig, GridId, GridKind, Hit, Insert, ObjectId, Pose, Ray, Result, Scene, Shape, Without,
+    Cull, ErrorKind, GridConfig, GridId, GridKind, Hit, Insert, MeshQuality, ObjectId, Pose, Ray, Result, Scene, Shape,
+    Without,
 };
 
 const ALONG_Z: [f64; 3] = [0.0, 0.0, 1.0];
@@ -250,6 +251,33 @@ fn culling_and_shapes() -> Result<()> {
     assert_eq!((report.kind, report.triangle_count), (raygrid::ShapeKind::Mesh, 1));
     assert_eq!((report.lo, report.hi), ([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]));
     assert!(format!("{triangle:?} {scene:?}").contains("triangle_count: 1"));
+    Ok(())
+}
+
+#[test]
+fn a_mesh_that_changes_its_form() -> Result<()> {
+    let corners: Vec<[f64; 3]> = (0..300).map(|i| [0.1, 0.7, 1.3].map(|f| (f * f64::from(i)).sin())).collect();
+    let rays: Vec<Ray> = corners.iter().map(|c| Ray::new([3.0, c[0], 2.0 * c[1]], [c[1] - 3.0, c[2], c[0]])).collect();
+    let hits = |scene: &Scene| -> Result<Vec<f64>> {
+        let mut hits = vec![Hit::MISS; rays.len()];
+        scene.trace_many(&rays, &mut hits)?;
+        Ok(hits.iter().map(|hit| hit.t).collect())
+    };
+    for quality in [MeshQuality::Best, MeshQuality::Fast] {
+        let making = Shape::mesh_builder().quality(quality).workers(2);
+        let (scene, other) = (Scene::new()?, Scene::new()?);
+        let mesh = making.triangles(&corners)?;
+        let ids = scene.insert_many(&mesh, &[[0.0; 3], [0.5, 0.0, 0.0]])?;
+        let larger: Vec<[f64; 3]> = corners.iter().map(|c| c.map(|x| 1.25 * x)).collect();
+        let bent = making.deformed(&mesh, &larger)?;
+        scene.replace_shape(&mesh, &bent)?;
+        assert!(ids.iter().all(|&id| scene.lookup(id).is_ok_and(|report| report.shape == bent.id())));
+        other.insert_many(&Shape::triangles(&larger)?, &[[0.0; 3], [0.5, 0.0, 0.0]])?;
+        assert_eq!(hits(&scene)?, hits(&other)?);
+        assert!(hits(&scene)?.iter().filter(|t| t.is_finite()).count() > 20);
+        assert_eq!(mesh.deformed(&larger[1..]).unwrap_err().kind(), ErrorKind::InvalidValue);
+        assert_eq!(Shape::sphere(1.0)?.deformed(&larger).unwrap_err().kind(), ErrorKind::InvalidArgument);
+    }
     Ok(())
 }
 
