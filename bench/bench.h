@@ -55,5 +55,6 @@ void bench_lasting(struct bench_run *run, const char *scene, uint32_t count);
 void bench_threads(struct bench_run *run, const char *scene, uint32_t count);
 void bench_omissions(struct bench_run *run, const char *scene, uint32_t count);
 void bench_latency(struct bench_run *run, const char *scene, uint32_t count);
+void bench_meshes(struct bench_run *run, const char *scene, uint32_t count);
 
 #endif

@@ -23,6 +23,23 @@ static const struct {
     [GOAL_CHANGE_LONGEST] = {{1000, 1000, 1000, 1000}, 0},
     [GOAL_REBUILD_FRAME] = {{0.8, 0.8, 0.8, 0.8}, 1},
     [GOAL_REBUILD_MEMORY] = {{2.2, 2.2, 2.2, 2.2}, 0},
+    [GOAL_MESH_INCOHERENT] = {{1.15, 1.15, 1.15, 2.5}, 1},
+    [GOAL_MESH_INCOHERENT_ROBUST] = {{1.4, 1.4, 1.4, 3}, 1},
+    [GOAL_MESH_PRIMARY] = {{1.2, 1.2, 1.2, 1.4}, 1},
+    [GOAL_MESH_PRIMARY_ROBUST] = {{1.4, 1.4, 1.4, 1.5}, 1},
+    [GOAL_MESH_SHADOW] = {{1.4, 1.4, 1.4, 1.5}, 1},
+    [GOAL_MESH_SHADOW_ROBUST] = {{1.5, 1.5, 1.5, 1.6}, 1},
+    [GOAL_MESH_SINGLE] = {{0.95, 0.95, 0.95, 1}, 1},
+    [GOAL_MESH_SINGLE_ROBUST] = {{1.1, 1.1, 1.1, 1.1}, 1},
+    /* Times: 1.1 of the peer's medium, 1.2 of its low, 1 of its refit. */
+    [GOAL_MESH_BEST] = {{1 / 1.1, 1 / 1.1, 1 / 1.1, 1 / 1.1}, 1},
+    [GOAL_MESH_FAST] = {{1 / 1.2, 1 / 1.2, 1 / 1.2, 1 / 1.2}, 1},
+    [GOAL_MESH_REFIT] = {{1, 1, 1, 1}, 1},
+    [GOAL_MESH_BYTES] = {{40, 40, 40, 40}, 0},
+    [GOAL_MESH_BYTES_SOUP] = {{60, 60, 60, 60}, 0},
+    [GOAL_INSTANCES_COHERENT] = {{2, 2, 2, 2}, 1},
+    [GOAL_INSTANCES_INCOHERENT] = {{1.5, 2, 2.5, 2.5}, 1},
+    [GOAL_INSTANCES_MOVED] = {{20, 100, 500, 500}, 1},
 };
 
 struct bench_goal bench_goal(enum bench_aim aim, uint32_t count) {

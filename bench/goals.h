@@ -28,6 +28,24 @@ enum bench_aim {
     GOAL_CHANGE_LONGEST, /* us */
     GOAL_REBUILD_FRAME,  /* of a frame's speed, while a grid is rebuilt */
     GOAL_REBUILD_MEMORY, /* times what the scene held before */
+    /* Of one mesh, by its triangles; _ROBUST: against a peer in its robust mode. */
+    GOAL_MESH_INCOHERENT,
+    GOAL_MESH_INCOHERENT_ROBUST,
+    GOAL_MESH_PRIMARY,
+    GOAL_MESH_PRIMARY_ROBUST,
+    GOAL_MESH_SHADOW,
+    GOAL_MESH_SHADOW_ROBUST,
+    GOAL_MESH_SINGLE,
+    GOAL_MESH_SINGLE_ROBUST,
+    GOAL_MESH_BEST,
+    GOAL_MESH_FAST,
+    GOAL_MESH_REFIT,
+    GOAL_MESH_BYTES,
+    GOAL_MESH_BYTES_SOUP,
+    /* Of instances of one, by their number. */
+    GOAL_INSTANCES_COHERENT,
+    GOAL_INSTANCES_INCOHERENT,
+    GOAL_INSTANCES_MOVED,
     GOALS
 };
 

@@ -7,27 +7,45 @@
 
 enum { LARGEST = 1000000 }; /* objects */
 
+/* Kinds of scenes. */
+enum { SPHERES = 1, OBJECTS = 2, ONE_MESH = 4 };
+
 /* What is done with one scene of one size. */
 struct section {
     const char *name;
     void (*run)(struct bench_run *run, const char *scene, uint32_t count);
-    bool spheres_only;
+    int scenes; /* the kinds that it is for */
 };
 
 static const struct section SECTIONS[] = {
-    {"builds", bench_builds, false},      {"traces", bench_traces, false},  {"updates", bench_updates, false},
-    {"frames", bench_frames, false},      {"lasting", bench_lasting, true}, {"threads", bench_threads, true},
-    {"omissions", bench_omissions, true}, {"latency", bench_latency, true},
+    {"builds", bench_builds, SPHERES | OBJECTS},
+    {"traces", bench_traces, SPHERES | OBJECTS | ONE_MESH},
+    {"meshes", bench_meshes, ONE_MESH},
+    {"updates", bench_updates, SPHERES | OBJECTS},
+    {"frames", bench_frames, SPHERES | OBJECTS},
+    {"lasting", bench_lasting, SPHERES},
+    {"threads", bench_threads, SPHERES},
+    {"omissions", bench_omissions, SPHERES},
+    {"latency", bench_latency, SPHERES},
 };
 
-static bool holds_spheres_only(const char *scene) {
-    return strcmp(scene, "uniform") == 0 || strcmp(scene, "mixed") == 0 || strcmp(scene, "stadium") == 0;
+static bool is_named(const char *scene, const char *const names[]) {
+    for (int i = 0; names[i]; i++) {
+        if (strcmp(scene, names[i]) == 0) return true;
+    }
+    return false;
+}
+
+static int kind_of(const char *scene) {
+    static const char *const spheres[] = {"uniform", "mixed", "stadium", NULL};
+    static const char *const meshes[] = {"noisy", "soup", NULL};
+    return is_named(scene, spheres) ? SPHERES : is_named(scene, meshes) ? ONE_MESH : OBJECTS;
 }
 
 /* The one scene that is as large as it is. */
 static void run_on_file(struct bench_run *run, const struct section *section) {
     const struct bench_options *options = &run->options;
-    if (section->spheres_only || !options->gltf || options->sizes) return;
+    if (!(section->scenes & OBJECTS) || !options->gltf || options->sizes) return;
     if (bench_wanted(options->scenes, BENCH_GLTF_SCENE)) section->run(run, BENCH_GLTF_SCENE, 0);
 }
 
@@ -35,9 +53,9 @@ static void run_section(struct bench_run *run, const struct section *section) {
     const struct bench_options *options = &run->options;
     for (int s = 0; BENCH_SCENES[s]; s++) {
         const char *scene = BENCH_SCENES[s];
-        bool spheres = holds_spheres_only(scene);
-        if (!bench_wanted(options->scenes, scene) || (section->spheres_only && !spheres)) continue;
-        uint32_t largest = spheres ? options->largest : options->largest_other;
+        int kind = kind_of(scene);
+        if (!bench_wanted(options->scenes, scene) || !(section->scenes & kind)) continue;
+        uint32_t largest = kind == OBJECTS ? options->largest_other : options->largest;
         for (uint32_t count = 1000; count <= LARGEST; count *= 10) {
             char size[16];
             snprintf(size, sizeof size, "%u", count);

@@ -11,21 +11,20 @@ void own_check(rg_result result) {
     exit(1);
 }
 
-static rg_shape *create_mesh(const struct bench_mesh *mesh) {
+rg_mesh_views own_mesh_views(const struct bench_mesh *mesh) {
     rg_mesh_views views = {.size = sizeof views};
-    rg_shape *shape;
     views.vertices = rg_input3_packed(mesh->vertices, 3 * sizeof(float), RG_F32);
     views.vertex_count = mesh->vertex_count;
     views.indices = rg_input3_packed(mesh->corners, 3 * sizeof(uint32_t), RG_U32);
     views.triangle_count = mesh->triangle_count;
-    own_check(rg_shape_create_mesh(NULL, &views, &shape));
-    return shape;
+    return views;
 }
 
 static rg_shape *create_shape(const struct bench_shape *shape) {
     const double *s = shape->size;
     const double lo[3] = {-s[0], -s[1], -s[2]}, a[3] = {-s[0], 0, 0}, b[3] = {s[0], 0, 0};
     rg_shape *result = NULL;
+    rg_mesh_views views;
     switch (shape->kind) {
     case RG_SHAPE_SPHERE:
         own_check(rg_shape_create_sphere(NULL, s[0], &result));
@@ -37,7 +36,8 @@ static rg_shape *create_shape(const struct bench_shape *shape) {
         own_check(rg_shape_create_capsule(NULL, a, b, s[1], &result));
         break;
     default:
-        result = create_mesh(shape->mesh);
+        views = own_mesh_views(shape->mesh);
+        own_check(rg_shape_create_mesh(NULL, &views, &result));
     }
     return result;
 }

@@ -29,6 +29,9 @@ rg_ray_views own_ray_views(const struct bench_rays *rays);
 /** Traces the rays with `a_call` rays a call, reading and writing the arrays by views. */
 void own_trace(struct own *own, const struct bench_rays *rays, uint32_t a_call, const struct bench_answers *answers);
 
+/** A mesh where it lies. */
+rg_mesh_views own_mesh_views(const struct bench_mesh *mesh);
+
 /** The body with that id, UINT32_MAX for none. */
 uint32_t own_body(const struct own *own, uint64_t id);
 

@@ -37,7 +37,7 @@ KEYS = {
     'peer_way': (str, type(None)),
     'versions': dict,
 }
-SECTIONS = {'builds', 'traces', 'updates', 'frames', 'lasting', 'threads', 'omissions', 'latency'}
+SECTIONS = {'builds', 'traces', 'meshes', 'updates', 'frames', 'lasting', 'threads', 'omissions', 'latency'}
 
 
 def run(*more):

@@ -75,9 +75,21 @@ static void choose_peer(struct contest *contest, bool single) {
     }
 }
 
-static struct bench_goal goal_of(const struct bench_rays *rays, const struct mode *mode,
-                                 const struct bench_scene *bodies) {
+/* Goals of meshes are there for either mode of the peer. */
+static struct bench_goal goal_of_mesh(const struct bench_rays *rays, const struct mode *mode, uint32_t triangles,
+                                      bool robust) {
     bool batch = mode->a_call == UINT32_MAX, single = mode->a_call == 1;
+    enum bench_aim aim = !rays->coherent ? GOAL_MESH_INCOHERENT : rays->any ? GOAL_MESH_SHADOW : GOAL_MESH_PRIMARY;
+    if (single) aim = GOAL_MESH_SINGLE;
+    return batch || single ? bench_goal(robust ? aim + 1 : aim, triangles) : bench_no_goal();
+}
+
+static struct bench_goal goal_of(const struct bench_rays *rays, const struct mode *mode,
+                                 const struct bench_scene *bodies, bool robust) {
+    bool batch = mode->a_call == UINT32_MAX, single = mode->a_call == 1;
+    if (bench_is_one_mesh(bodies)) return goal_of_mesh(rays, mode, bodies->size, robust);
+    if (batch && strcmp(bodies->name, "meshes") == 0)
+        return bench_goal(rays->coherent ? GOAL_INSTANCES_COHERENT : GOAL_INSTANCES_INCOHERENT, bodies->count);
     if (!rays->coherent && batch) return bench_goal(GOAL_INCOHERENT, bodies->count);
     if (!rays->coherent && single) return bench_goal(GOAL_SINGLE, bodies->count);
     if (!batch || !bench_all_spheres(bodies)) return bench_no_goal();
@@ -111,7 +123,7 @@ static void measure_mode(struct bench_run *run, struct contest *contest, const s
     line.figure = 1e-6 * rays->count / duel.own;
     line.peer_figure = 1e-6 * rays->count / duel.peer;
     line.ratio = duel.ratio;
-    line.goal = goal_of(rays, mode, bodies);
+    line.goal = goal_of(rays, mode, bodies, run->options.peer.robust);
     line.error = &error;
     line.bytes = own_bytes_per_object(contest->own);
     bench_report_line(&run->report, &line);
