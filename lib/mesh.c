@@ -226,7 +226,7 @@ typedef struct wanted {
 static void read_triangle(const rgi_mesh *mesh, const void *leaf, uint32_t triangle, const wanted *w) {
     double v[3][3];
     uint32_t number = rgi_mesh_primitive(mesh, leaf, triangle);
-    if (w->vertices) rgi_triangle_corners(mesh, leaf, triangle, v);
+    rgi_triangle_corners(mesh, leaf, triangle, v);
     for (uint32_t c = 0; c < 3; c++) {
         uint32_t vertex = rgi_mesh_vertex(mesh, leaf, triangle, c);
         if (w->vertices) rgi_copy(v[c], w->vertices[vertex]);

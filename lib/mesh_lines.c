@@ -2,6 +2,7 @@
 /* The nodes and leaves of a mesh, out of its binary tree. */
 #include "mesh_build.h"
 
+#include "beam.h"
 #include "error.h"
 #include "vec.h"
 
