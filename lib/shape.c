@@ -310,9 +310,8 @@ static rg_result check_vertices(const rg_mesh_views *v) {
     rg_result result =
         rgi_check_view3(v->vertices.x, v->vertices.y, v->vertices.z, v->vertices.type, RGI_FLOATS, 1, "vertices");
     if (result) return result;
-    if (v->vertex_count >= UINT32_MAX)
-        return rgi_fail(RG_LIMIT_EXCEEDED, "vertex_count is %" PRIu64 ", not below 2^32 - 1", v->vertex_count);
-    return v->vertex_count ? RG_OK : rgi_fail(RG_INVALID_VALUE, "vertex_count is 0");
+    if (v->vertex_count < UINT32_MAX) return RG_OK;
+    return rgi_fail(RG_LIMIT_EXCEEDED, "vertex_count is %" PRIu64 ", not below 2^32 - 1", v->vertex_count);
 }
 
 static rg_result check_triangles(const rg_mesh_views *v) {
@@ -323,6 +322,7 @@ static rg_result check_triangles(const rg_mesh_views *v) {
         return rgi_fail(RG_INVALID_VALUE, "triangle_count is 0: a mesh has a triangle at least");
     if (v->triangle_count >= 1u << 31)
         return rgi_fail(RG_LIMIT_EXCEEDED, "triangle_count is %" PRIu64 ", not below 2^31", v->triangle_count);
+    if (v->vertex_count == 0) return rgi_fail(RG_INVALID_VALUE, "vertex_count is 0");
     if (!v->indices.x && v->triangle_count != v->vertex_count / 3)
         return rgi_fail(RG_INVALID_VALUE,
                         "triangle_count is %" PRIu64 ", but %" PRIu64 " vertices without indices make %" PRIu64,
