@@ -25,6 +25,9 @@ struct rgi_cut;
 /** Entries of a beam's stack; what goes deeper is walked by recursion. */
 enum { RGI_STACK = 256 };
 
+/** Packets that may go together: 8x8 pixels of a picture. */
+enum { RGI_PACKETS = 4 };
+
 /**
  * From farther than this many radii of all that is stored, the origin is first moved along the ray to where it comes
  * near, so many radii before the middle, in front of everything: floats then have their bits where they are needed.
@@ -109,11 +112,8 @@ static inline double rgi_mesh_unit(double largest) {
 void rgi_beam_start(rgi_beam *beam, rgi_ref root);
 
 /**
- * Up to RGI_PACKET rays that go the same way: all run along one axis in the same sense, and between four planes, two
- * across each other axis. What none of them can meet is passed over for all at once.
- *
- * Of each ray's nearest hit so far only bounds are known, t_lo to t_hi, as long as they tell hits apart. Where they
- * overlap, or where a hit is not certain, both are asked.
+ * Up to RGI_PACKET rays, one a lane. Of each ray's nearest hit so far only bounds are known, t_lo to t_hi, as long as
+ * they tell hits apart. Where they overlap, or where a hit is not certain, both are asked.
  */
 typedef struct rgi_packet {
     float origin[3][RGI_PACKET] __attribute__((aligned(64))), direction[3][RGI_PACKET];
@@ -135,6 +135,15 @@ typedef struct rgi_packet {
     bool (*ask_mesh)(struct rgi_packet *packet, uint32_t rays, uint32_t slot);
     void *context;
     const rgi_bundle *bundle;
+} rgi_packet;
+
+/**
+ * Packets that go the same way: all their rays run along one axis in the same sense, and between four planes, two
+ * across each other axis. What none of them can meet is passed over for all at once.
+ */
+typedef struct rgi_frustum {
+    rgi_packet *packets[RGI_PACKETS];
+    uint32_t count;
     uint32_t visits;   /* nodes and blocks looked into */
     uint32_t patience; /* with more than so many it ends before it is through */
     /* the planes: x[across] - slope * x[axis], for rays between lo and hi */
@@ -147,7 +156,7 @@ typedef struct rgi_packet {
     float start_first, start_last; /* along the axis: the origins lie between; first in the sense of the rays */
     float pad_most;
     uint32_t negative;
-} rgi_packet;
+} rgi_frustum;
 
 /** One ray of a packet on its own; ask, query and any are left. */
 void rgi_beam_of_packet(rgi_beam *beam, const rgi_packet *packet, uint32_t ray, const rgi_lattice *lattice);
@@ -167,18 +176,19 @@ struct rgi_kernels {
     /** Brings prepared rays into the frame of a lattice. */
     void (*to_frame)(const rgi_bundle *bundle, const rgi_lattice *lattice, const rgi_middle *middle,
                      rgi_packet *packet);
-    /** Whether the rays of a packet go the same way; then sets the planes that bound them. */
-    bool (*bound)(rgi_packet *packet, const rgi_lattice *lattice, const rgi_middle *middle);
+    /** Whether the rays of the packets go the same way; then sets the planes that bound them, and begins. */
+    bool (*bound)(rgi_frustum *frustum, const rgi_lattice *lattice, const rgi_middle *middle);
     /** Where the rays meet balls, to the same bits as rgi_object_intersect. */
     void (*meet)(const rgi_bundle *bundle, rgi_meeting *meeting);
     /** Takes one ray through the lattice. */
     void (*trace_one)(const rgi_lattice *lattice, rgi_beam *beam);
     /** Takes up to RGI_PACKET rays through side by side, each on its own way, so that waits for memory overlap. */
     void (*trace_some)(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count);
-    /** Takes a packet through. What is certain at its end has not been asked. If its patience
-     *  has ended before, those still active are to go on as beams. */
-    void (*trace_packet)(const rgi_lattice *lattice, rgi_packet *packet);
-    void (*trace_packets)(const rgi_lattice *lattice, rgi_packet *one, rgi_packet *other);
+    /** Takes packets through together. What is certain at its end has not been asked. If its patience has ended
+     * before, those rays that are still active are to go on another way. */
+    void (*trace_frustum)(const rgi_lattice *lattice, rgi_frustum *frustum);
+    /** The same for two of them in turn. */
+    void (*trace_frusta)(const rgi_lattice *lattice, rgi_frustum *one, rgi_frustum *other);
     /** Takes one ray through a mesh. */
     void (*mesh_one)(struct rgi_mesh_ray *ray);
     /** Brings the rays of a bundle into the local frame of an object that is a mesh, and into that of the mesh. */

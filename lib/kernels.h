@@ -335,6 +335,5 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 #endif
 
 const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
-    RGI_TEXT(RGI_NAME), RGI_ISA,      unite_block,   prepare,  to_frame,   bound,       meet,      trace_one,
-    trace_some,         trace_packet, trace_packets, mesh_one, mesh_enter, mesh_packet, find_split,
-    measure_leaf};
+    RGI_TEXT(RGI_NAME), RGI_ISA,       unite_block,  prepare,  to_frame,   bound,       meet,       trace_one,
+    trace_some,         trace_frustum, trace_frusta, mesh_one, mesh_enter, mesh_packet, find_split, measure_leaf};

@@ -179,5 +179,4 @@ static void to_frame(const rgi_bundle *b, const rgi_lattice *lattice, const rgi_
     p->active = (1u << b->count) - 1;
     LANES(i) p->active &= ~((uint32_t)passes[i] << i);
     p->certain = 0;
-    p->visits = 0;
 }

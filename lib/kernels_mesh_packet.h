@@ -150,23 +150,10 @@ static void mesh_enter(const rgi_bundle *b, const rgi_object *object, const rgi_
 typedef struct mesh_stack {
     uint32_t depth;
     float most;
-    float ts[PACKET_STACK];
-    uint32_t octants[PACKET_STACK];
-    rgi_mesh_ref parents[PACKET_STACK];
+    float ts[FRUSTUM_STACK];
+    uint32_t octants[FRUSTUM_STACK];
+    rgi_mesh_ref parents[FRUSTUM_STACK];
 } mesh_stack;
-
-/* Rays of a packet that may meet one of the boxes of a node. */
-RGI_INLINE uint32_t meet_one_box(const rgi_packet *p, const float *planes) {
-    f16 first = f16_load(p->t_first), last = f16_load(p->t_hi);
-    for (uint32_t a = 0; a < 3; a++) {
-        f16 inverse = f16_load(p->inverse[a]);
-        f16 one = f16_mul(f16_set(planes[a * RGI_CHILDREN]), inverse);
-        f16 other = f16_mul(f16_set(planes[(a + 3) * RGI_CHILDREN]), inverse);
-        first = f16_max(f16_add(f16_min(one, other), f16_load(p->near[a])), first);
-        last = f16_min(f16_add(f16_max(one, other), f16_load(p->far[a])), last);
-    }
-    return f16_le(first, last) & p->active;
-}
 
 /* So few pairs are tested one by one. */
 enum { FEW = 6 };
@@ -316,14 +303,14 @@ RGI_INLINE bool visit_leaf_with(rgi_mesh_packet *m, const void *leaf, uint32_t r
 }
 
 /* Looks into a node for the rays together. */
-RGI_INLINE void visit_node_with(const rgi_mesh_packet *m, mesh_stack *s, rgi_mesh_ref ref) {
+RGI_INLINE void visit_node_with(const rgi_mesh *mesh, const rgi_frustum *f, mesh_stack *s, rgi_mesh_ref ref) {
     static const uint32_t numbers[RGI_CHILDREN] __attribute__((aligned(32))) = {0, 1, 2, 3, 4, 5, 6, 7};
-    const rgi_mesh_node *n = rgi_mesh_at(m->mesh, ref);
+    const rgi_mesh_node *n = rgi_mesh_at(mesh, ref);
     f8 t;
-    uint32_t met = meet_together_f8(n->lo[0], RGI_CHILDREN, &m->rays, s->most, &t);
-    uint32_t count = f8_keep(met, orders[m->rays.negative], t, numbers, s->ts + s->depth, s->octants + s->depth);
+    uint32_t met = meet_together_f8(n->lo[0], RGI_CHILDREN, f, s->most, &t);
+    uint32_t count = f8_keep(met, orders[f->negative], t, numbers, s->ts + s->depth, s->octants + s->depth);
     for (uint32_t i = 0; i < count; i++) {
-        const char *child = rgi_mesh_at(m->mesh, n->child[s->octants[s->depth + i]]);
+        const char *child = rgi_mesh_at(mesh, n->child[s->octants[s->depth + i]]);
         s->parents[s->depth + i] = ref;
         for (int k = 0; k < 4; k++) __builtin_prefetch(child + RGI_MESH_LINE * k);
     }
@@ -338,21 +325,24 @@ static bool mesh_packet(rgi_mesh_packet *m) {
         visit_leaf_with(m, rgi_mesh_at(m->mesh, m->mesh->root), p->active);
         return true;
     }
-    if (!bound_in(p, m->mesh->scale, &m->mesh->middle)) return false;
+    rgi_frustum f;
+    f.packets[0] = p;
+    f.count = 1;
+    if (!bound_in(&f, m->mesh->scale, &m->mesh->middle)) return false;
     s.depth = 0;
-    s.most = farthest(p);
-    visit_node_with(m, &s, m->mesh->root);
+    s.most = f16_most(reaches(p));
+    visit_node_with(m->mesh, &f, &s, m->mesh->root);
     while (s.depth && p->active) {
         s.depth--;
         if (s.ts[s.depth] > s.most) continue;
         const rgi_mesh_node *parent = rgi_mesh_at(m->mesh, s.parents[s.depth]);
-        uint32_t octant = s.octants[s.depth], rays = meet_one_box(p, parent->lo[0] + octant);
+        uint32_t octant = s.octants[s.depth], rays = meet_planes(p, parent->lo[0] + octant);
         if (!rays) continue;
         rgi_mesh_ref ref = parent->child[octant];
         if (!(ref & RGI_MESH_LEAF))
-            visit_node_with(m, &s, ref);
+            visit_node_with(m->mesh, &f, &s, ref);
         else if (visit_leaf_with(m, rgi_mesh_at(m->mesh, ref), rays))
-            s.most = farthest(p);
+            s.most = f16_most(reaches(p));
     }
     return true;
 }

@@ -9,10 +9,10 @@
 enum {
     /* Fewer rays are better off on their own. */
     MIN_PACKET = 4,
-    /* Nodes and blocks that a packet looks into before its rays go on apart: where objects are dense against the
+    /* Nodes and blocks that packets look into before their rays go on apart: where objects are dense against the
      * distance of the rays, as in a small cluster, the planes around them hold too many. Some 17 to 50 are common. */
     PATIENCE = 160,
-    /* After packets given up in a row 1, 3, 7, then 15 groups are not tried together. */
+    /* After tries given up in a row 1, 3, 7, then 15 are left out. */
     MOST_LOST = 4
 };
 
@@ -24,17 +24,30 @@ typedef struct known {
     const void *leaf[RGI_PACKET];
 } known;
 
+/** Whether it is worth a try to take rays through together: not for a while after tries that were given up. */
+typedef struct pace {
+    uint32_t lost;     /* tries in a row that were given up */
+    uint32_t left_out; /* those still to be left out because of it */
+} pace;
+
+/** What the groups of a range have in common. */
+typedef struct course {
+    const rgi_call *call;
+    const rgi_lattice *lattice; /* which holds all objects of the scene; or NULL */
+    rgi_middle middle;          /* of it */
+    bool apart;                 /* each ray is to go alone */
+    pace wide, narrow;          /* of several groups together, of the rays of one */
+} course;
+
 /** Rays that are worked on at a time. */
 typedef struct group {
     const rgi_call *call;
-    uint64_t first; /* number of the first ray */
+    const rgi_lattice *lattice; /* see course */
+    uint64_t first;             /* number of the first ray */
     uint32_t count;
-    const rgi_lattice *lattice; /* which holds all objects of the scene; or NULL */
-    rgi_middle middle;          /* of it */
-    uint32_t made;              /* bits of the queries that have their ray: in a packet only those that ask */
-    uint32_t lost;              /* packets in a row that were given up */
-    uint32_t apart;             /* groups that are not tried together because of it */
-    bool together;              /* they go the same way, as `packet` */
+    uint32_t made; /* bits of the queries that have their ray: in a packet only those that ask */
+    bool waits;    /* its rays are in `packet`, and have not gone through yet */
+    bool together; /* they went the same way, as `packet` */
     rgi_packet packet;
     rgi_bundle bundle;
     known known;
@@ -396,73 +409,114 @@ static uint32_t finish_packet(group *g, rgi_packet *p) {
     return written;
 }
 
-/* Rays of a bundle that do not go the same way. */
-static void bundle_apart(group *g) {
-    const rgi_call *c = g->call;
-    rgi_beam beams[RGI_PACKET];
-    uint32_t used = 0;
-    for (uint32_t rays = g->packet.active; rays; rays &= rays - 1) {
-        uint32_t i = (uint32_t)__builtin_ctz(rays);
-        rgi_beam_of_packet(&beams[used], &g->packet, i, g->lattice);
-        beams[used].ask = ask;
-        beams[used].any = c->any && !asks_all(c) && g->bundle.mask[i];
-        beams[used++].query = query_of(g, i);
-    }
-    trace_beams(c, g->lattice, beams, used);
+/* ------------------------------------------------------------------------------------------- ways through */
+
+static bool is_due(pace *p) {
+    if (!p->left_out) return true;
+    p->left_out--;
+    return false;
 }
 
-/* Reads the rays of a group; those that do not go the same way are taken through at once. */
-static void begin(group *g) {
-    const rgi_call *c = g->call;
-    const rgi_kernels *kernels = c->scene->kernels;
+static void note_try(pace *p, bool lost) {
+    p->lost = lost ? p->lost + (p->lost < MOST_LOST) : 0;
+    p->left_out = (1u << p->lost) - 1;
+}
+
+/* Reads the rays of a group. Those that can't be in a packet are taken through at once. */
+static void begin(group *g, const course *way) {
     rgi_packet *p = &g->packet;
     g->together = false;
-    if (!g->lattice || !load(g)) {
+    g->waits = g->lattice && load(g);
+    if (!g->waits) {
         each_through_grids(g);
         return;
     }
-    kernels->to_frame(&g->bundle, g->lattice, &g->middle, p);
+    g->call->scene->kernels->to_frame(&g->bundle, g->lattice, &way->middle, p);
     p->found = 0;
-    if (g->lattice->unbounded_count) ask_unbounded(g, p);
-    bool alone = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW || g->apart;
-    g->apart -= g->apart > 0;
-    if (alone || !kernels->bound(p, g->lattice, &g->middle)) {
-        bundle_apart(g);
-        return;
-    }
-    g->together = true;
-    p->any = c->any;
-    p->patience = PATIENCE;
-    p->ask_all = asks_all(c);
+    p->any = g->call->any;
+    p->ask_all = asks_all(g->call);
     for (uint32_t i = 0; i < g->count; i++) p->ask_all |= g->bundle.mask[i] == 0;
     p->ask = ask_of_packet;
     p->ask_mesh = ask_mesh;
     p->context = g;
     p->bundle = &g->bundle;
+    if (g->lattice->unbounded_count) ask_unbounded(g, p);
 }
 
-/* After a packet that has looked into too much: what is certain is asked, and the rays still on their way begin anew.
- */
-static void go_on_apart(group *g) {
+/* Each ray its own way. */
+static void go_apart(group *g) {
+    const rgi_call *c = g->call;
     rgi_packet *p = &g->packet;
-    for (uint32_t rays = g->call->any ? 0 : p->certain; rays; rays &= rays - 1) {
+    rgi_beam beams[RGI_PACKET];
+    uint32_t used = 0;
+    /* What a packet that was given up has found is asked first. */
+    for (uint32_t rays = c->any ? 0 : p->certain; rays; rays &= rays - 1) {
         uint32_t ray = (uint32_t)__builtin_ctz(rays), slot;
         memcpy(&slot, &p->best[ray], sizeof slot);
         (void)ask_of_packet(p, ray, slot);
         p->certain &= ~(1u << ray);
     }
-    bundle_apart(g);
-    g->lost += g->lost < MOST_LOST;
-    g->apart = (1u << g->lost) - 1;
+    for (uint32_t rays = p->active; rays; rays &= rays - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(rays);
+        rgi_beam_of_packet(&beams[used], p, i, g->lattice);
+        beams[used].ask = ask;
+        beams[used].any = c->any && !asks_all(c) && g->bundle.mask[i];
+        beams[used++].query = query_of(g, i);
+    }
+    trace_beams(c, g->lattice, beams, used);
+    g->waits = false;
+    g->together = c->any; /* what is certain needs no query */
+}
+
+/* Whether groups can go together, as a frustum. */
+static bool unite(rgi_frustum *f, group *groups, uint32_t count, const course *way) {
+    f->count = count;
+    f->patience = PATIENCE;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!groups[i].waits) return false;
+        f->packets[i] = &groups[i].packet;
+    }
+    return way->call->scene->kernels->bound(f, way->lattice, &way->middle);
+}
+
+/* Whether a frustum has come to its end; else its rays still wait. */
+static bool has_arrived(const rgi_frustum *f, group *groups) {
+    if (f->visits > f->patience) return false;
+    for (uint32_t i = 0; i < f->count; i++) {
+        groups[i].waits = false;
+        groups[i].together = true;
+    }
+    return true;
+}
+
+/* All groups together, if they go the same way. */
+static void go_wide(group *groups, uint32_t count, course *way) {
+    rgi_frustum f;
+    bool united = unite(&f, groups, count, way);
+    if (united) way->call->scene->kernels->trace_frustum(way->lattice, &f);
+    note_try(&way->wide, !united || !has_arrived(&f, groups));
+}
+
+/* One group, or two in turn, the rays of each together if they go the same way, and else apart. */
+static void go_narrow(group *groups, uint32_t count, course *way) {
+    const rgi_kernels *kernels = way->call->scene->kernels;
+    rgi_frustum frusta[2];
+    bool united[2] = {false, false};
+    for (uint32_t i = 0; i < count; i++)
+        united[i] = groups[i].waits && !way->apart && is_due(&way->narrow) && unite(&frusta[i], &groups[i], 1, way);
+    if (united[0] && united[1])
+        kernels->trace_frusta(way->lattice, &frusta[0], &frusta[1]);
+    else if (united[0] || united[1])
+        kernels->trace_frustum(way->lattice, &frusta[united[1]]);
+    for (uint32_t i = 0; i < count; i++) {
+        if (united[i]) note_try(&way->narrow, !has_arrived(&frusta[i], &groups[i]));
+        if (groups[i].waits) go_apart(&groups[i]);
+    }
 }
 
 /* Writes what became of the rays. */
 static void finish(group *g, uint64_t *invalid, bool *failed) {
     const rgi_call *c = g->call;
-    if (g->together && g->packet.visits > PATIENCE)
-        go_on_apart(g);
-    else if (g->together)
-        g->lost = 0;
     uint32_t written = g->together ? finish_packet(g, &g->packet) : 0;
     for (uint32_t i = 0; i < g->count; i++) {
         if (written >> i & 1) continue;
@@ -476,58 +530,51 @@ static void finish(group *g, uint64_t *invalid, bool *failed) {
     }
 }
 
-/* Takes those that go together through. */
-static void trace_together(group *one, group *other) {
-    const rgi_kernels *kernels = one->call->scene->kernels;
-    if (one->together && other->together)
-        kernels->trace_packets(one->lattice, &one->packet, &other->packet);
-    else if (one->together)
-        kernels->trace_packet(one->lattice, &one->packet);
-    else if (other->together)
-        kernels->trace_packet(other->lattice, &other->packet);
-}
-
-/* For all rays of a range. */
-static void init(group *g, const rgi_call *c, uint64_t rays) {
-    g->call = c;
-    g->lost = g->apart = 0;
-    g->together = false;
-    g->lattice = rays < MIN_PACKET ? NULL : only_lattice(c->scene);
-    if (g->lattice) g->middle = rgi_lattice_middle(g->lattice);
+/* Groups for all rays of a range. */
+static void init(course *way, group *groups, uint32_t room, const rgi_call *c, uint64_t rays) {
+    memset(way, 0, sizeof *way);
+    way->call = c;
+    way->lattice = rays < MIN_PACKET ? NULL : only_lattice(c->scene);
+    if (way->lattice) way->middle = rgi_lattice_middle(way->lattice);
+    way->apart = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW;
     /* Then rays may spread as they like to count as going the same way. */
-    if (c->config.coherence == RG_COHERENCE_HIGH) g->middle.spacing = INFINITY;
-    for (uint32_t i = 0; i < RGI_PACKET && i < rays; i++) rgi_query_init(&g->queries[i], c);
+    if (c->config.coherence == RG_COHERENCE_HIGH) way->middle.spacing = INFINITY;
+    for (uint32_t n = 0; n < room; n++) {
+        groups[n].call = c;
+        groups[n].lattice = way->lattice;
+        for (uint32_t i = 0; i < RGI_PACKET && i < rays; i++) rgi_query_init(&groups[n].queries[i], c);
+    }
 }
 
-static uint64_t next_rays(group *g, uint64_t at, uint64_t last) {
+static uint64_t next_rays(group *g, const course *way, uint64_t at, uint64_t last) {
     g->first = at;
     g->count = last - at < RGI_PACKET ? (uint32_t)(last - at) : RGI_PACKET;
-    begin(g);
+    begin(g, way);
     return at + g->count;
 }
 
 /* A few rays, on a small stack. */
 static void through_one(rgi_call *c, uint64_t first, uint64_t last, uint64_t *invalid, bool *failed) {
+    course way;
     group g;
-    init(&g, c, last - first);
-    next_rays(&g, first, last);
-    if (g.together) c->scene->kernels->trace_packet(g.lattice, &g.packet);
+    init(&way, &g, 1, c, last - first);
+    next_rays(&g, &way, first, last);
+    go_narrow(&g, 1, &way);
     finish(&g, invalid, failed);
 }
 
 static uint64_t through_many(rgi_call *c, uint64_t first, uint64_t last, bool may_stop, uint64_t *invalid,
                              bool *failed) {
-    group one, other;
-    init(&one, c, last - first);
-    init(&other, c, last - first);
+    course way;
+    group groups[RGI_PACKETS];
+    init(&way, groups, RGI_PACKETS, c, last - first);
     do {
-        first = next_rays(&one, first, last);
-        other.together = false;
-        other.count = 0;
-        if (first < last) first = next_rays(&other, first, last);
-        trace_together(&one, &other);
-        finish(&one, invalid, failed);
-        finish(&other, invalid, failed);
+        bool wide = way.lattice && !way.apart && is_due(&way.wide);
+        uint32_t count = 0, most = wide ? RGI_PACKETS : 2;
+        while (count < most && first < last) first = next_rays(&groups[count++], &way, first, last);
+        if (wide) go_wide(groups, count, &way);
+        for (uint32_t i = 0; i < count; i += 2) go_narrow(&groups[i], count - i < 2 ? 1 : 2, &way);
+        for (uint32_t i = 0; i < count; i++) finish(&groups[i], invalid, failed);
     } while (first < last && !(may_stop && rgi_lock_is_wanted(&c->scene->lock)));
     return first;
 }

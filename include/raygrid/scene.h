@@ -4,7 +4,7 @@
  *
  * Thread rule: a scene may be used by any number of threads at once. Changes are seen whole or not at all; a trace
  * that starts after such a call returned sees its effect. There is no commit and no step. A change does not wait for
- * a trace to end, only for the rays under way on each thread, some 32: so of a trace that overlaps with changes, rays
+ * a trace to end, only for the rays under way on each thread, at most 64: so of a trace that overlaps with changes, rays
  * 16 * k to 16 * k + 15 see the scene at one instant, later ones maybe at a later one; a call of up to 16 rays sees
  * one. From inside a callback (user-defined shape or filter) the scene being traced may be traced and read; calls
  * that would change it return RG_BUSY. A callback may trace other scenes too, as long as no callback of those traces

@@ -13,7 +13,12 @@
 #include <string.h>
 
 /* Builds with sanitizers take fewer. */
-enum { OBJECTS = 1500, LONE_ROUNDS = SHORT_TESTS ? 10 : 20, BATCHES = SHORT_TESTS ? 40 : 60 };
+enum {
+    OBJECTS = 1500,
+    LONE_ROUNDS = SHORT_TESTS ? 10 : 20,
+    BATCHES = SHORT_TESTS ? 40 : 60,
+    MOST_RAYS = RGI_PACKETS * RGI_PACKET
+};
 
 /* ------------------------------------------------------------------------------------------------------ rays */
 
@@ -139,7 +144,7 @@ static bool ask_beam(rgi_beam *beam, uint32_t slot) {
 }
 
 typedef struct tally {
-    uint64_t rays, met, asked, packets, certain;
+    uint64_t rays, met, asked, packets, several, certain;
 } tally;
 
 static void show_ray(const rgi_ray *r) {
@@ -270,38 +275,51 @@ static void judge_any(const witness *w, const char *isa) {
     ck_abort_msg("%s: %s", isa, found ? "found something where nothing is" : "found nothing where something is");
 }
 
-/* Takes rays through as a packet, if they go the same way. mode 0: all are asked; 1: the nearest; 2: any. */
-static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count, bool spread, int mode, tally *all) {
-    static witness witnesses[RGI_PACKET];
-    static rgi_ray ready[RGI_PACKET];
-    rgi_middle middle = rgi_lattice_middle(&store.lattice);
-    rgi_bundle b = {.count = count};
-    if (spread) middle.spacing = INFINITY; /* as where the host says that they go the same way */
-    rgi_packet p;
+/* Up to RGI_PACKET rays from the first on. Returns whether they can be in a packet. */
+static bool make_packet(const rgi_kernels *k, const rgi_middle *middle, const rg_ray *rays, uint32_t count,
+                        rgi_ray *ready, rgi_bundle *b, rgi_packet *p) {
+    b->count = count;
     for (uint32_t i = 0; i < RGI_PACKET; i++) {
         const rg_ray *r = &rays[i < count ? i : 0];
-        for (int a = 0; a < 3; a++) b.origin[a][i] = r->origin[a], b.direction[a][i] = r->direction[a];
-        b.t_min[i] = r->t_min;
-        b.t_max[i] = r->t_max;
-        b.mask[i] = r->mask;
-        bool valid = rgi_ray_init(&ready[i], r->origin, r->direction, r->t_min, r->t_max, r->mask);
-        begin_witness(&witnesses[i], &ready[i], mode == 1);
-        if (!valid) return;
+        for (int a = 0; a < 3; a++) b->origin[a][i] = r->origin[a], b->direction[a][i] = r->direction[a];
+        b->t_min[i] = r->t_min;
+        b->t_max[i] = r->t_max;
+        b->mask[i] = r->mask;
+        if (!rgi_ray_init(&ready[i], r->origin, r->direction, r->t_min, r->t_max, r->mask)) return false;
     }
-    if (!k->prepare(&b)) return;
-    k->to_frame(&b, &store.lattice, &middle, &p);
-    if (!k->bound(&p, &store.lattice, &middle)) return;
-    p.any = mode == 2;
-    p.ask_all = mode == 0;
-    p.ask = ask_packet;
-    p.ask_mesh = no_mesh;
-    p.context = witnesses;
-    p.bundle = &b;
-    p.found = 0;
-    p.patience = UINT32_MAX;
-    k->trace_packet(&store.lattice, &p);
+    if (!k->prepare(b)) return false;
+    k->to_frame(b, &store.lattice, middle, p);
+    p->ask = ask_packet;
+    p->ask_mesh = no_mesh;
+    p->bundle = b;
+    p->found = 0;
+    return true;
+}
+
+/* Takes rays through together, if they go the same way. mode 0: all are asked; 1: the nearest; 2: any. */
+static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count, bool spread, int mode, tally *all) {
+    static witness witnesses[MOST_RAYS];
+    static rgi_ray ready[MOST_RAYS];
+    static rgi_bundle bundles[RGI_PACKETS];
+    static rgi_packet packets[RGI_PACKETS];
+    rgi_middle middle = rgi_lattice_middle(&store.lattice);
+    rgi_frustum f = {.count = (count + RGI_PACKET - 1) / RGI_PACKET, .patience = UINT32_MAX};
+    if (spread) middle.spacing = INFINITY; /* as where the host says that they go the same way */
+    for (uint32_t n = 0; n < f.count; n++) {
+        uint32_t first = n * RGI_PACKET, left = count - first < RGI_PACKET ? count - first : RGI_PACKET;
+        if (!make_packet(k, &middle, rays + first, left, ready + first, &bundles[n], &packets[n])) return;
+        packets[n].any = mode == 2;
+        packets[n].ask_all = mode == 0;
+        packets[n].context = witnesses + first;
+        f.packets[n] = &packets[n];
+    }
+    for (uint32_t i = 0; i < f.count * RGI_PACKET; i++) begin_witness(&witnesses[i], &ready[i], mode == 1);
+    if (!k->bound(&f, &store.lattice, &middle)) return;
+    k->trace_frustum(&store.lattice, &f);
     all->packets++;
-    ask_certain(&p, witnesses, count, all, k->name);
+    all->several += f.count > 1;
+    for (uint32_t n = 0; n < f.count; n++)
+        ask_certain(&packets[n], witnesses + n * RGI_PACKET, bundles[n].count, all, k->name);
     for (uint32_t i = 0; i < count; i++) {
         if (mode == 2)
             judge_any(&witnesses[i], k->name);
@@ -313,24 +331,25 @@ static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count
 static void trace_batches(const rgi_kernels *k, const crowd *c, int mode, tally *all) {
     random_source random = {(uint64_t)(unit_random() * 0x1p53)};
     for (int round = 0; round < BATCHES; round++) {
-        rg_ray rays[RGI_PACKET];
+        rg_ray rays[MOST_RAYS];
+        uint32_t most = round % 5 ? RGI_PACKET : MOST_RAYS;
         const rgi_bound *aim = &store.truth[machine_below(OBJECTS)];
         batch_space space = {{c->centre, -0.7 * c->centre, c->centre}, c->spread};
         if (round % 2) { /* around one object */
             space.spread = aim->hi[0] - aim->lo[0];
             for (int a = 0; a < 3; a++) space.centre[a] = aim->centre[a];
         }
-        batch_rays(&random, &space, rays, RGI_PACKET);
+        batch_rays(&random, &space, rays, most);
         double away = pow(10, 3 * unit_random()) * (aim->hi[0] - aim->lo[0]), eye[3];
         for (int a = 0; a < 3; a++) eye[a] = aim->centre[a] + away * (2 * unit_random() - 1);
-        for (int i = 0; i < RGI_PACKET && round % 3 == 0; i++) {
+        for (uint32_t i = 0; i < most && round % 3 == 0; i++) {
             double d[3];
             graze(aim, eye, d);
             for (int a = 0; a < 3 && round % 4 == 0; a++)
                 d[a] += 0.3 * (2 * unit_random() - 1) * fabs(d[(a + 1) % 3]);
             rays[i] = rg_ray_from(eye, d);
         }
-        trace_batch(k, rays, 4 + (uint32_t)machine_below(13), round % 4 == 0, mode, all);
+        trace_batch(k, rays, most - (uint32_t)machine_below(13), round % 4 == 0, mode, all);
     }
 }
 
@@ -343,6 +362,7 @@ START_TEST(packets) {
         trace_batches(k, &crowds[n], 1, &nearest);
         trace_batches(k, &crowds[n], 2, &any);
         ck_assert_uint_gt(all.packets + nearest.packets + any.packets, BATCHES / 5);
+        ck_assert_uint_gt(all.several + nearest.several + any.several, 3);
         if (n < 2) {
             ck_assert_uint_le(all.asked, all.met + all.met / 20 + all.rays / 10);
             ck_assert(crowds[n].balls < 1 || nearest.certain + any.certain > BATCHES);
