@@ -13,12 +13,6 @@
 
 #include <string.h>
 
-enum {
-    AHEAD = 16, /* objects, and then their blocks, are fetched so many ahead of the one that is moved */
-    TILE = 1024,
-    WORTH_SHARING = 4 * TILE /* below waking the workers costs more than they save */
-};
-
 /** A call. */
 typedef struct moves {
     rg_scene *scene;
@@ -28,7 +22,8 @@ typedef struct moves {
     rgi_touched touched;
     /* While it is shared out: */
     uint32_t failed; /* atomic: an object is not quick to move, or given twice */
-    uint16_t *left; /* of each tile, TILE numbers of its moves: those that leave their cells from the front on, and */
+    uint16_t
+        *left; /* of each tile, RGI_TILE numbers of its moves: those that leave their cells from the front on, and */
     uint16_t *counts; /* those whose boxes are loose from the back on; how many of each */
 } moves;
 
@@ -50,17 +45,11 @@ static bool is_quick(const moves *m, uint64_t i) {
 }
 
 static void fetch_object(const moves *m, uint64_t i) {
-    if (i >= m->count) return;
-    uint32_t slot = slot_of(m, i);
-    if (slot < m->scene->objects.used) __builtin_prefetch(rgi_scene_object(m->scene, slot), 1);
+    if (i < m->count) rgi_fetch_object(m->scene, rgi_load_integer(m->objects, i, 0));
 }
 
-/* Of an object that was checked. */
-static void fetch_block(const moves *m, uint64_t i) {
-    if (i >= m->count) return;
-    uint32_t slot = slot_of(m, i);
-    const rgi_any_grid *grid = m->scene->grids[rgi_scene_object(m->scene, slot)->grid & (RGI_MARK - 1)].grid;
-    rgi_lattice_fetch(&grid->lattice, rgi_any_grid_place(grid, m->scene, slot));
+static void fetch_place(const moves *m, uint64_t i) {
+    if (i < m->count) rgi_fetch_place(m->scene, rgi_load_integer(m->objects, i, 0));
 }
 
 /* Out of its cell. */
@@ -77,7 +66,7 @@ static void move_far(const moves *m, uint64_t i) {
 
 static bool are_quick(const moves *m) {
     for (uint64_t i = 0; i < m->count; i++) {
-        fetch_object(m, i + AHEAD);
+        fetch_object(m, i + RGI_AHEAD);
         if (!is_quick(m, i)) return false;
     }
     return true;
@@ -87,8 +76,8 @@ static void move_in_order(moves *m) {
     for (uint64_t i = 0; i < m->count; i++) {
         uint32_t slot = slot_of(m, i);
         double position[3];
-        fetch_object(m, i + 2 * AHEAD);
-        fetch_block(m, i + AHEAD);
+        fetch_object(m, i + 2 * RGI_AHEAD);
+        fetch_place(m, i + RGI_AHEAD);
         rgi_load3(&m->poses->position, i, position);
         rgi_touch(&m->touched, rgi_scene_object(m->scene, slot)->grid);
         if (!rgi_step(m->scene, slot, position)) move_far(m, i);
@@ -98,15 +87,15 @@ static void move_in_order(moves *m) {
 /* ------------------------------------------------------------------------------------------------ shared out */
 
 static uint64_t end_of_tile(const moves *m, uint64_t tile) {
-    uint64_t end = (tile + 1) * TILE;
+    uint64_t end = (tile + 1) * RGI_TILE;
     return end < m->count ? end : m->count;
 }
 
 /* Marks the objects: one that is marked already is given twice, and would be moved by two threads. */
 static void check_tile(void *context, uint64_t tile) {
     moves *m = context;
-    for (uint64_t i = tile * TILE, end = end_of_tile(m, tile); i < end; i++) {
-        fetch_object(m, i + AHEAD);
+    for (uint64_t i = tile * RGI_TILE, end = end_of_tile(m, tile); i < end; i++) {
+        fetch_object(m, i + RGI_AHEAD);
         bool quick = is_quick(m, i);
         if (quick) {
             uint32_t *grid = &rgi_scene_object(m->scene, slot_of(m, i))->grid;
@@ -117,22 +106,15 @@ static void check_tile(void *context, uint64_t tile) {
     }
 }
 
-static void unmark_all(const moves *m) {
-    for (uint64_t i = 0; i < m->count; i++) {
-        uint32_t slot = slot_of(m, i);
-        if (slot < m->scene->objects.used) rgi_scene_object(m->scene, slot)->grid &= RGI_MARK - 1;
-    }
-}
-
 static void move_tile(void *context, uint64_t tile) {
     moves *m = context;
-    uint16_t *left = m->left + tile * TILE;
+    uint16_t *left = m->left + tile * RGI_TILE;
     uint32_t leaving = 0, loose = 0;
-    for (uint64_t first = tile * TILE, i = first, end = end_of_tile(m, tile); i < end; i++) {
+    for (uint64_t first = tile * RGI_TILE, i = first, end = end_of_tile(m, tile); i < end; i++) {
         uint32_t slot = slot_of(m, i);
         rgi_object *object = rgi_scene_object(m->scene, slot);
         double position[3];
-        if (i + AHEAD < end) fetch_block(m, i + AHEAD);
+        if (i + RGI_AHEAD < end) fetch_place(m, i + RGI_AHEAD);
         object->grid &= RGI_MARK - 1;
         rgi_any_grid *grid = m->scene->grids[object->grid].grid;
         rgi_load3(&m->poses->position, i, position);
@@ -140,7 +122,7 @@ static void move_tile(void *context, uint64_t tile) {
                                                    object->reach);
         if (step != RGI_LEFT) rgi_copy(position, object->position);
         if (step == RGI_LEFT) left[leaving++] = (uint16_t)(i - first);
-        if (step == RGI_LOOSENED) left[TILE - ++loose] = (uint16_t)(i - first);
+        if (step == RGI_LOOSENED) left[RGI_TILE - ++loose] = (uint16_t)(i - first);
     }
     m->counts[2 * tile] = (uint16_t)leaving;
     m->counts[2 * tile + 1] = (uint16_t)loose;
@@ -148,13 +130,13 @@ static void move_tile(void *context, uint64_t tile) {
 
 /* What the tiles have left over. */
 static void finish_tile(moves *m, uint64_t tile) {
-    const uint16_t *left = m->left + tile * TILE;
+    const uint16_t *left = m->left + tile * RGI_TILE;
     for (uint32_t n = 1; n <= m->counts[2 * tile + 1]; n++) {
-        uint32_t slot = slot_of(m, tile * TILE + left[TILE - n]);
+        uint32_t slot = slot_of(m, tile * RGI_TILE + left[RGI_TILE - n]);
         rgi_any_grid *grid = m->scene->grids[rgi_scene_object(m->scene, slot)->grid].grid;
         rgi_lattice_tighten(&grid->lattice, rgi_any_grid_place(grid, m->scene, slot));
     }
-    for (uint32_t n = 0; n < m->counts[2 * tile]; n++) move_far(m, tile * TILE + left[n]);
+    for (uint32_t n = 0; n < m->counts[2 * tile]; n++) move_far(m, tile * RGI_TILE + left[n]);
 }
 
 /* Which objects have moved is noted, and of which grids. */
@@ -169,14 +151,14 @@ static void note_all(moves *m) {
 static bool move_shared(moves *m) {
     rgi_memory *memory = &m->scene->memory;
     rgi_pool *pool = m->scene->pool;
-    uint64_t tiles = (m->count + TILE - 1) / TILE;
-    rg_result result = rgi_allocate(memory, tiles * TILE, sizeof *m->left, "moving many objects", &m->left);
+    uint64_t tiles = (m->count + RGI_TILE - 1) / RGI_TILE;
+    rg_result result = rgi_allocate(memory, tiles * RGI_TILE, sizeof *m->left, "moving many objects", &m->left);
     if (result) return false;
     result = rgi_allocate(memory, 2 * tiles, sizeof *m->counts, "moving many objects", &m->counts);
     if (!result) {
         rgi_pool_run(pool, tiles, check_tile, m);
         if (m->failed) {
-            unmark_all(m);
+            rgi_unmark_all(m->scene, m->objects, m->count);
         } else {
             rgi_pool_run(pool, tiles, move_tile, m);
             for (uint64_t tile = 0; tile < tiles; tile++) finish_tile(m, tile);
@@ -184,13 +166,13 @@ static bool move_shared(moves *m) {
         }
         rgi_release(memory, m->counts, 2 * tiles, sizeof *m->counts);
     }
-    rgi_release(memory, m->left, tiles * TILE, sizeof *m->left);
+    rgi_release(memory, m->left, tiles * RGI_TILE, sizeof *m->left);
     return !result && !m->failed;
 }
 
 /* Not by the host's own jobs: they may all be waiting for this change to end. */
 static bool is_worth_sharing(const moves *m) {
-    if (m->count < WORTH_SHARING || !rgi_pool_has_threads(m->scene->pool)) return false;
+    if (m->count < RGI_WORTH_SHARING || !rgi_pool_has_threads(m->scene->pool)) return false;
     for (uint32_t i = 0; i < m->scene->grid_places; i++) {
         if (m->scene->grids[i].grid && m->scene->grids[i].grid->rebuild) return false;
     }

@@ -197,15 +197,16 @@ void rgi_settle_touched(rg_scene *scene, const rgi_touched *t, uint64_t count) {
     }
 }
 
+/* See RGI_AHEAD. */
+static void fetch_ahead(const rg_scene *scene, const rg_input *objects, uint64_t i, uint64_t count) {
+    if (i + 2 * RGI_AHEAD < count) rgi_fetch_object(scene, rgi_load_integer(objects, i + 2 * RGI_AHEAD, 0));
+    if (i + RGI_AHEAD < count) rgi_fetch_place(scene, rgi_load_integer(objects, i + RGI_AHEAD, 0));
+}
+
 static rg_result find_nth(const rg_scene *scene, const rg_input *objects, uint64_t i, uint32_t *slot) {
     rg_result result = rgi_find_object(scene, rgi_load_integer(objects, i, 0), slot);
     if (result) rgi_fail_prefix("object %" PRIu64 " of the call: ", i);
     return result;
-}
-
-static void unmark(rg_scene *scene, const rg_input *objects, uint64_t count) {
-    for (uint64_t i = 0; i < count; i++)
-        rgi_scene_object(scene, RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0)))->grid &= ~(uint32_t)RGI_MARK;
 }
 
 /** A move that was checked, for the second time over: what took time to find out. */
@@ -224,11 +225,12 @@ typedef struct move_need {
     uint64_t linears;
 } move_need;
 
-static rg_result check_move(rg_scene *scene, const rg_pose_views *poses, uint64_t i, checked_move *move,
-                            move_need *need) {
+/* Notes in *again whether the object has been moved by this call before. */
+static rg_result check_move(const rg_scene *scene, const rg_pose_views *poses, uint64_t i, checked_move *move,
+                            move_need *need, bool *again) {
     rgi_placing p;
     rgi_object *object = rgi_scene_object(scene, move->slot);
-    uint32_t grid = object->grid & (RGI_MARK - 1);
+    uint32_t grid = __atomic_load_n(&object->grid, __ATOMIC_RELAXED) & (RGI_MARK - 1);
     rg_result result = place_view(scene, poses, i, object->shape, object, &p);
     if (result) {
         rgi_fail_prefix("object %" PRIu64 " of the call: ", i);
@@ -237,24 +239,87 @@ static rg_result check_move(rg_scene *scene, const rg_pose_views *poses, uint64_
     move->bound = p.bound;
     move->reach = p.reach;
     move->inside = rgi_any_grid_need_move(scene->grids[grid].grid, scene, move->slot, &p.bound, &need->grids[grid]);
-    move->whole = p.is_linear || object->linear != RGI_NONE || (object->grid & RGI_MARK);
+    *again = __atomic_fetch_or(&object->grid, RGI_MARK, __ATOMIC_RELAXED) & RGI_MARK;
+    move->whole = p.is_linear || object->linear != RGI_NONE || *again;
     need->linears += p.is_linear && object->linear == RGI_NONE;
     rgi_touch(&need->touched, grid);
-    object->grid |= RGI_MARK;
     return RG_OK;
+}
+
+/* One after another. */
+static rg_result check_moves(const rg_scene *scene, const rg_input *objects, const rg_pose_views *poses,
+                             uint64_t count, checked_move *moves, move_need *need) {
+    uint64_t marked = 0;
+    rg_result result = RG_OK;
+    bool again;
+    for (; marked < count && !result; marked += !result) {
+        fetch_ahead(scene, objects, marked, count);
+        result = find_nth(scene, objects, marked, &moves[marked].slot);
+        if (!result) result = check_move(scene, poses, marked, &moves[marked], need, &again);
+    }
+    rgi_unmark_all(scene, objects, marked);
+    return result;
+}
+
+/** The same shared out among the workers. What one object of a call tells of another, that it is the same one or
+ * which of two is refused, is left to the way in order. */
+typedef struct shared_check {
+    const rg_scene *scene;
+    const rg_input *objects;
+    const rg_pose_views *poses;
+    uint64_t count;
+    checked_move *moves;
+    move_need *need;
+    uint32_t failed; /* atomic */
+} shared_check;
+
+static void add_need(const rg_scene *scene, move_need *sum, const move_need *part) {
+    for (uint32_t g = 0; g < scene->grid_places; g++) {
+        if (!rgi_is_touched(&part->touched, g)) continue;
+        __atomic_fetch_or(&sum->touched.bits[g / 32], 1u << g % 32, __ATOMIC_RELAXED);
+        __atomic_fetch_add(&sum->grids[g].members, part->grids[g].members, __ATOMIC_RELAXED);
+        __atomic_fetch_add(&sum->grids[g].entries, part->grids[g].entries, __ATOMIC_RELAXED);
+        __atomic_fetch_add(&sum->grids[g].tiles, part->grids[g].tiles, __ATOMIC_RELAXED);
+    }
+    __atomic_fetch_add(&sum->linears, part->linears, __ATOMIC_RELAXED);
+}
+
+static void check_tile(void *context, uint64_t tile) {
+    shared_check *c = context;
+    uint64_t first = tile * RGI_TILE, end = c->count - first < RGI_TILE ? c->count : first + RGI_TILE;
+    move_need need;
+    memset(&need, 0, sizeof need);
+    for (uint64_t i = first; i < end && !__atomic_load_n(&c->failed, __ATOMIC_RELAXED); i++) {
+        bool again = false;
+        fetch_ahead(c->scene, c->objects, i, end);
+        rg_result result = find_nth(c->scene, c->objects, i, &c->moves[i].slot);
+        if (!result) result = check_move(c->scene, c->poses, i, &c->moves[i], &need, &again);
+        if (result || again) __atomic_store_n(&c->failed, 1, __ATOMIC_RELAXED);
+    }
+    add_need(c->scene, c->need, &need);
+}
+
+/* False: nothing is known. */
+static bool check_shared(const rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count,
+                         checked_move *moves, move_need *need) {
+    shared_check c = {scene, objects, poses, count, moves, need, 0};
+    if (count < RGI_WORTH_SHARING || !rgi_pool_has_threads(scene->pool)) return false;
+    rgi_fail_quietly(true);
+    rgi_pool_run(scene->pool, (count + RGI_TILE - 1) / RGI_TILE, check_tile, &c);
+    rgi_fail_quietly(false);
+    rgi_unmark_all(scene, objects, count);
+    return !c.failed;
 }
 
 /* Checks all moves and makes room for them. */
 static rg_result prepare_move(rg_scene *scene, const rg_input *objects, const rg_pose_views *poses, uint64_t count,
                               checked_move *moves, move_need *need) {
-    uint64_t marked = 0;
     rg_result result = RG_OK;
     memset(need, 0, sizeof *need);
-    for (; marked < count && !result; marked += !result) {
-        result = find_nth(scene, objects, marked, &moves[marked].slot);
-        if (!result) result = check_move(scene, poses, marked, &moves[marked], need);
+    if (!check_shared(scene, objects, poses, count, moves, need)) {
+        memset(need, 0, sizeof *need);
+        result = check_moves(scene, objects, poses, count, moves, need);
     }
-    unmark(scene, objects, marked);
     if (!result) result = rgi_slots_reserve(&scene->linears, need->linears);
     for (uint32_t g = 0; g < scene->grid_places && !result; g++) {
         if (rgi_is_touched(&need->touched, g)) result = rgi_any_grid_reserve(scene->grids[g].grid, &need->grids[g]);
@@ -290,7 +355,10 @@ static rg_result move_all(rg_scene *scene, const rg_input *objects, const rg_pos
     rg_result result = rgi_allocate(&scene->memory, count, sizeof *moves, "moving many objects", &moves);
     if (result) return result;
     result = prepare_move(scene, objects, poses, count, moves, &need);
-    for (uint64_t i = 0; i < count && !result; i++) result = make_move(scene, poses, i, &moves[i]);
+    for (uint64_t i = 0; i < count && !result; i++) {
+        fetch_ahead(scene, objects, i, count);
+        result = make_move(scene, poses, i, &moves[i]);
+    }
     rgi_release(&scene->memory, moves, count, sizeof *moves);
     if (!result) rgi_settle_touched(scene, &need.touched, count);
     return result;
@@ -329,10 +397,11 @@ static rg_result remove_all(rg_scene *scene, const rg_input *objects, uint64_t c
     rgi_touched grids;
     memset(&grids, 0, sizeof grids);
     rg_result result = mark_all(scene, objects, count, &marked);
-    unmark(scene, objects, marked);
+    rgi_unmark_all(scene, objects, marked);
     if (result) return result;
     for (uint64_t i = 0; i < count; i++) {
         uint32_t slot = RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0));
+        fetch_ahead(scene, objects, i, count);
         rgi_touch(&grids, rgi_scene_object(scene, slot)->grid);
         rgi_shape_put_aside(rgi_remove_one(scene, slot), gone);
     }

@@ -8,6 +8,7 @@
 #include "record.h"
 #include "struct_size.h"
 #include "vec.h"
+#include "views.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -74,6 +75,26 @@ double rgi_object_scale(const rgi_object *object, const rgi_linear *linear) {
 }
 
 /* ----------------------------------------------------------------------------------------- one object */
+
+void rgi_unmark_all(const rg_scene *scene, const rg_input *objects, uint64_t count) {
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t slot = RG_OBJECT_SLOT(rgi_load_integer(objects, i, 0));
+        if (slot < scene->objects.used) rgi_scene_object(scene, slot)->grid &= RGI_MARK - 1;
+    }
+}
+
+void rgi_fetch_object(const rg_scene *scene, rg_object id) {
+    uint32_t slot = RG_OBJECT_SLOT(id);
+    if (slot < scene->objects.used) __builtin_prefetch(rgi_scene_object(scene, slot), 1);
+}
+
+void rgi_fetch_place(const rg_scene *scene, rg_object id) {
+    uint32_t slot = RG_OBJECT_SLOT(id);
+    if (slot >= scene->objects.used || !rgi_scene_object(scene, slot)->shape) return;
+    uint32_t number = __atomic_load_n(&rgi_scene_object(scene, slot)->grid, __ATOMIC_RELAXED) & (RGI_MARK - 1);
+    const rgi_any_grid *grid = scene->grids[number].grid;
+    if (rgi_any_grid_is_loose(grid)) rgi_lattice_fetch(&grid->lattice, rgi_any_grid_place(grid, scene, slot));
+}
 
 rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot) {
     *slot = RG_OBJECT_SLOT(id);

@@ -56,6 +56,19 @@ static inline bool rgi_is_touched(const rgi_touched *t, uint32_t grid) {
     return t->bits[grid / 32] >> grid % 32 & 1;
 }
 
+/** A call on many asks for what it will need of an object, so many objects before it comes to it: for the object's
+ * record, and as many later, when that is there, for where it is stored. An id that names none is passed over. */
+enum { RGI_AHEAD = 16 };
+void rgi_fetch_object(const rg_scene *scene, rg_object id);
+void rgi_fetch_place(const rg_scene *scene, rg_object id);
+
+/** Takes the marks off all objects that ids name, some of which may name none. */
+void rgi_unmark_all(const rg_scene *scene, const rg_input *objects, uint64_t count);
+
+/** Calls on so many and more are shared out among the workers, in tiles: for fewer waking them costs more than they
+ * save. */
+enum { RGI_TILE = 1024, RGI_WORTH_SHARING = 4 * RGI_TILE };
+
 void rgi_settle_touched(rg_scene *scene, const rgi_touched *t, uint64_t count);
 
 /** Moves balls of lattices whose moves can't fail. False: not all are, and nothing has been done. */
