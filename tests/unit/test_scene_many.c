@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { OBJECTS = 9000, RAYS = 400, TURNS = SHORT_TESTS ? 12 : 60 };
+enum { OBJECTS = 5200, RAYS = 400, TURNS = SHORT_TESTS ? 6 : 30 };
 
 /* Balls of lattices are shared out whole, of all others the first look at them. */
 static const struct form {
@@ -96,7 +96,7 @@ START_TEST(as_by_one_thread) {
     const double steps[] = {0.05, 1, 30};
     begin(2 + (uint32_t)_i / FORMS, forms[_i % FORMS]);
     for (int turn = 0; turn < TURNS; turn++) {
-        int count = turn % 2 ? OBJECTS : 5000;
+        int count = turn % 2 ? OBJECTS : 4200;
         any_moves(which, to, count, steps[turn % 3]);
         ck_assert_int_eq(move_both(which, to, count), RG_OK);
         check();
@@ -127,7 +127,7 @@ START_TEST(all_or_none) {
     any_moves(which, to, OBJECTS, 1);
     to[OBJECTS - 5][1] = NAN;
     ck_assert_int_eq(move_both(which, to, OBJECTS), RG_INVALID_VALUE);
-    ck_assert_ptr_nonnull(strstr(rg_error_message(), "object 8995 of the call"));
+    ck_assert_ptr_nonnull(strstr(rg_error_message(), "object 5195 of the call"));
     check();
     any_moves(which, to, OBJECTS, 1);
     for (int s = 0; s < 2; s++) {
