@@ -3,13 +3,12 @@
  * raygrid-demo: a glTF scene taken apart and moving among spheres and boxes that come and go, rendered frame by
  * frame.
  *
- *   gltf_*.{h,cpp}   a file, checked to the last offset, as a tree of nodes with surfaces and animations
- *   stage            raygrid's scene, and beside it the same objects for brute force
- *   parts, swarm     what moves                     world    all of it, and how it looks
- *   camera, pass     rays and what they hit         shade    light from that
- *   render           passes to a picture            picture  OpenEXR, PNG
- *   verify           hits against brute force       report   the table
+ *   world            all that moves, and the ground below    swarm    spheres and boxes that drift
+ *   path             of the camera
+ *   verify           hits against brute force                report   the table
+ *   ../common        what the viewer does alike: glTF files and their parts, scene, rays, light, pictures
  */
+#include "path.h"
 #include "report.h"
 #include "text.h"
 
@@ -20,10 +19,20 @@ namespace demo {
 
 namespace {
 
+/* The ray through the centre of each pixel comes last, so that the check finds it in the pass. */
+Pass::Cost render(const World &world, Renderer &renderer, const Options &options, double phase) {
+    const Camera camera = camera_on_path(phase, options.width, options.height);
+    Pass::Cost cost;
+    renderer.restart();
+    for (uint32_t number = options.samples; number-- > 0;)
+        renderer.add(world.stage().scene(), world.looks(), camera, number, PassWants(), cost);
+    return cost;
+}
+
 Frame render_frame(World &world, Renderer &renderer, const Options &options, double phase, Imath::Rand48 &random) {
     Frame frame = {};
     frame.update = world.advance();
-    frame.cost = renderer.render(world, phase);
+    frame.cost = render(world, renderer, options, phase);
     frame.errors = verify(world.stage(), renderer.pass(), options.sample, random);
     rg_grid_report grid = {};
     grid.size = sizeof grid;
@@ -52,7 +61,8 @@ int run(const Options &options) {
         throw std::runtime_error(options.gltf + ": " + error.what());
     }
     std::filesystem::create_directories(options.out);
-    Renderer renderer(options);
+    Crew crew(options.workers);
+    Renderer renderer(options.width, options.height, crew);
     ContactSheet sheet(options.frames);
     Imath::Rand48 random(static_cast<unsigned long>(options.seed + 2000));
     for (uint32_t f = 0; f < options.frames; ++f) {

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "options.h"
 
-#include <cerrno>
-#include <cstdlib>
 #include <getopt.h>
 
 namespace demo {
@@ -44,71 +42,40 @@ const option flags[] = {
     {nullptr, 0, nullptr, 0},
 };
 
-/* strtoull takes signs and blanks, which a count has none of. */
-uint64_t number(const char *name, const std::string &text, uint64_t least, uint64_t most) {
-    char *end = nullptr;
-    errno = 0;
-    const bool digits = !text.empty() && text[0] >= '0' && text[0] <= '9';
-    const unsigned long long value = digits ? std::strtoull(text.c_str(), &end, 10) : 0;
-    if (!digits || *end != '\0' || errno != 0 || value < least || value > most)
-        throw UsageError("--" + std::string(name) + " wants a number from " + std::to_string(least) + " to " +
-                         std::to_string(most) + ", not '" + text + "'");
-    return value;
-}
-
-uint32_t count(const char *name, const std::string &text, uint32_t least, uint32_t most) {
-    return static_cast<uint32_t>(number(name, text, least, most));
-}
-
-void read_size(const std::string &text, Options &options) {
-    const size_t cross = text.find('x');
-    if (cross == std::string::npos) throw UsageError("--size wants WIDTHxHEIGHT, not '" + text + "'");
-    options.width = count("size", text.substr(0, cross), 1, 4096);
-    options.height = count("size", text.substr(cross + 1), 1, 4096);
-}
-
-rg_grid_kind grid_kind(const std::string &text) {
-    if (text == "uniform") return RG_GRID_UNIFORM;
-    if (text == "hierarchical") return RG_GRID_HIERARCHICAL;
-    if (text == "loose") return RG_GRID_LOOSE;
-    if (text == "default") return RG_GRID_DEFAULT;
-    throw UsageError("--grid wants uniform, hierarchical, loose or default, not '" + text + "'");
-}
-
 void read_option(int flag, const std::string &text, Options &options) {
     switch (flag) {
     case GLTF:
         options.gltf = text;
         break;
     case FRAMES:
-        options.frames = count("frames", text, 1, 1000);
+        options.frames = read_count("frames", text, 1, 1000);
         break;
     case SIZE:
-        read_size(text, options);
+        read_size("size", text, options.width, options.height);
         break;
     case OUT:
         options.out = text;
         break;
     case SPHERES:
-        options.spheres = count("spheres", text, 0, 10000000);
+        options.spheres = read_count("spheres", text, 0, 10000000);
         break;
     case BOXES:
-        options.boxes = count("boxes", text, 0, 10000000);
+        options.boxes = read_count("boxes", text, 0, 10000000);
         break;
     case WORKERS:
-        options.workers = count("workers", text, 0, 1024);
+        options.workers = read_count("workers", text, 0, 1024);
         break;
     case GRID:
-        options.grid = grid_kind(text);
+        options.grid = read_grid_kind("grid", text);
         break;
     case SAMPLE:
-        options.sample = count("sample", text, 0, 1000000);
+        options.sample = read_count("sample", text, 0, 1000000);
         break;
     case SAMPLES:
-        options.samples = count("samples", text, 1, 256);
+        options.samples = read_count("samples", text, 1, 256);
         break;
     case SEED:
-        options.seed = number("seed", text, 0, UINT64_MAX);
+        options.seed = read_number("seed", text, 0, UINT64_MAX);
         break;
     case STILLS:
         options.stills = true;

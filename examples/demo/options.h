@@ -3,10 +3,7 @@
 #ifndef DEMO_OPTIONS_H
 #define DEMO_OPTIONS_H
 
-#include <cstdint>
-#include <raygrid/grid.h>
-#include <stdexcept>
-#include <string>
+#include "arguments.h"
 
 namespace demo {
 
@@ -24,11 +21,6 @@ struct Options {
     bool stills = false;
     bool quiet = false;
     bool help = false;
-};
-
-/** What is wrong with the command line. */
-struct UsageError : std::runtime_error {
-    using std::runtime_error::runtime_error;
 };
 
 /** Throws UsageError. */

@@ -5,6 +5,7 @@
 
 #include "render.h"
 #include "verify.h"
+#include "world.h"
 
 namespace demo {
 

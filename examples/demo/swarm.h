@@ -12,6 +12,12 @@
 
 namespace demo {
 
+/**
+ * The box where all begins, and which the swarm drifts out of: the first physical box of the grid. The model lies
+ * within a radius of 1 and rises when it is taken apart. Without it the box would be that of what is inserted first.
+ */
+constexpr double stage_lo[3] = {-2.8, -1, -2.8}, stage_hi[3] = {2.8, 1.4, 2.8};
+
 /** The linear part of a pose: first stretched along the axes, then turned. */
 void set_linear(rg_pose &pose, const Imath::Quatd &turn, const Imath::V3d &stretch);
 

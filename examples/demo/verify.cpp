@@ -19,16 +19,16 @@ void judge_primary(const reference_scene *scene, const Pass &pass, size_t pixel,
     ++errors.checked;
     if (verdict == REFERENCE_EQUAL) errors.worst_t = std::max(errors.worst_t, double(error.t));
     if (verdict != REFERENCE_WRONG) return;
-    if (errors.wrong++ == 0) errors.first_wrong = "pixel " + std::to_string(pixel) + ": " + error.what;
+    if (errors.wrong++ == 0) errors.first_wrong = "pixel " + std::to_string(pass.place(pixel)) + ": " + error.what;
 }
 
 void judge_sun(const reference_scene *scene, const Pass &pass, size_t index, Errors &errors) {
     const rg_ray ray = pass.sun_ray(index);
-    const bool hidden = pass.sun_hidden[index] != 0;
+    const bool hidden = pass.sun.hidden[index] != 0;
     ++errors.checked;
     if (reference_compare_occluded(scene, &ray, RG_CULL_NONE, hidden) != REFERENCE_WRONG) return;
     if (errors.wrong++ == 0)
-        errors.first_wrong = "pixel " + std::to_string(pass.sun_pixels[index]) +
+        errors.first_wrong = "pixel " + std::to_string(pass.place(pass.sun.pixels[index])) +
                              (hidden ? ": its sun is hidden by nothing" : ": its sun is hidden, and that was missed");
 }
 
@@ -38,8 +38,8 @@ Errors verify(const Stage &stage, const Pass &pass, size_t count, Imath::Rand48 
     Errors errors;
     if (!stage.twin()) return errors;
     for (size_t i = 0; i < count; ++i) {
-        if (i % 2 == 1 && !pass.sun_pixels.empty())
-            judge_sun(stage.twin(), pass, pick(pass.sun_pixels.size(), random), errors);
+        if (i % 2 == 1 && pass.sun.count > 0)
+            judge_sun(stage.twin(), pass, pick(pass.sun.count, random), errors);
         else
             judge_primary(stage.twin(), pass, pick(pass.pixels(), random), errors);
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "world.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace demo {
 
@@ -9,67 +9,35 @@ namespace {
 
 constexpr double frame_seconds = 1.0 / 24;
 
-/* Linear reflectances: warm ones, so that the engine's white, blue and turquoise stand out among them. */
-const Imath::V3f palette[] = {
-    {0.80f, 0.17f, 0.03f}, {0.80f, 0.32f, 0.04f}, {0.62f, 0.47f, 0.30f},
-    {0.55f, 0.06f, 0.05f}, {0.78f, 0.72f, 0.62f}, {0.10f, 0.09f, 0.10f},
-};
+StageSetup setup_of(const Options &options) {
+    StageSetup setup;
+    setup.grid.kind = options.grid;
+    std::copy_n(stage_lo, 3, setup.grid.lo);
+    std::copy_n(stage_hi, 3, setup.grid.hi);
+    setup.workers = options.workers;
+    setup.twin = options.sample > 0;
+    return setup;
+}
 
 } // namespace
 
 World::World(const Model &model, const Options &options, Notes notes)
-    : model_(model), options_(options), notes_(std::move(notes)), stage_(options),
-      parts_(model, stage_, options.seed), spheres_(stage_, false, options.spheres, parts_.floor(), options.seed),
+    : options_(options), notes_(std::move(notes)), stage_(setup_of(options)), parts_(model, stage_, options.seed),
+      spheres_(stage_, false, options.spheres, parts_.floor(), options.seed),
       boxes_(stage_, true, options.boxes, parts_.floor(), options.seed) {}
-
-void World::set_look(rg_object object, const Look &look) {
-    const uint32_t slot = RG_OBJECT_SLOT(object);
-    if (slot >= looks_.size()) looks_.resize(slot + size_t(1));
-    looks_[slot] = look;
-}
 
 void World::start(Update &update) {
     spheres_.start();
     boxes_.start();
     /* Infinite, so it is one that no cell holds; a little below the model, which would else lie in its surface. */
-    const double infinity = HUGE_VAL, lo[3] = {-infinity, -1, -infinity}, hi[3] = {infinity, 0, infinity};
-    Body ground;
-    ground.form = stage_.box(lo, hi);
-    ground.pose = rg_pose_at(0, parts_.floor() - 0.01, 0);
-    stage_.insert(&ground, 1);
-    Look look;
-    look.kind = Look::Kind::Ground;
-    look.colour = {0.085f, 0.105f, 0.135f};
-    set_look(ground.object, look);
+    insert_ground(stage_, looks_, parts_.floor() - 0.01);
     update.inserted += spheres_.bodies().size() + boxes_.bodies().size() + 1;
 }
 
 void World::paint_swarm(const Swarm &swarm) {
     const std::vector<Body> &bodies = swarm.bodies();
-    for (size_t i = bodies.size() - swarm.fresh(); i < bodies.size(); ++i) {
-        /* The id's own digits decide: the colour stays with the object. */
-        uint64_t mixed = bodies[i].object * 0x9E3779B97F4A7C15u;
-        Look look;
-        look.colour = palette[(mixed >> 40) % (sizeof palette / sizeof *palette)];
-        look.gloss = 0.5f;
-        set_look(bodies[i].object, look);
-    }
-}
-
-void World::paint_parts() {
-    for (size_t i = 0; i < parts_.bodies().size(); ++i) {
-        const Body &body = parts_.bodies()[i];
-        if (body.object == RG_NO_OBJECT) continue;
-        const Surface &surface = model_.surfaces()[model_.parts()[i].surface];
-        Look look;
-        look.colour = surface.colour;
-        look.gloss = std::max(surface.gloss, 0.35f);
-        look.surface = surface.normals.empty() ? nullptr : &surface;
-        const float *m = body.pose.linear;
-        /* For row vectors a normal goes by the inverse of the linear part for column vectors. */
-        look.normals = Imath::M33f(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]).inverse();
-        set_look(body.object, look);
-    }
+    for (size_t i = bodies.size() - swarm.fresh(); i < bodies.size(); ++i)
+        looks_.set(bodies[i].object, look_by_id(bodies[i].object));
 }
 
 World::Update World::advance() {
@@ -90,7 +58,7 @@ World::Update World::advance() {
     ++frame_;
     paint_swarm(spheres_);
     paint_swarm(boxes_);
-    paint_parts();
+    parts_.paint(looks_);
     return update;
 }
 

@@ -3,19 +3,11 @@
 #ifndef DEMO_WORLD_H
 #define DEMO_WORLD_H
 
+#include "options.h"
 #include "parts.h"
 #include "swarm.h"
 
 namespace demo {
-
-/** How an object reflects light. */
-struct Look {
-    enum class Kind { Plain, Ground } kind = Kind::Plain;
-    Imath::V3f colour{0.8f, 0.8f, 0.8f};
-    float gloss = 0;
-    const Surface *surface = nullptr; /* for smooth normals; NULL: the geometric ones do */
-    Imath::M33f normals;              /* takes normals of the surface to the world, for row vectors */
-};
 
 class World {
   public:
@@ -31,21 +23,18 @@ class World {
 
     Stage &stage() { return stage_; }
     const Stage &stage() const { return stage_; }
-    const Look &look(rg_object object) const { return looks_[RG_OBJECT_SLOT(object)]; }
+    const Looks &looks() const { return looks_; }
 
   private:
     void start(Update &update);
-    void set_look(rg_object object, const Look &look);
-    void paint_parts();
     void paint_swarm(const Swarm &swarm);
 
-    const Model &model_;
     const Options options_;
     const Notes notes_;
     Stage stage_;
     Parts parts_;
     Swarm spheres_, boxes_;
-    std::vector<Look> looks_; /* by slot */
+    Looks looks_;
     uint32_t frame_ = 0;
 };
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "picture.h"
 
-#include <algorithm>
+#include "tone.h"
+
 #include <cmath>
 #include <png.h>
 #include <stdexcept>
@@ -9,16 +10,6 @@
 namespace demo {
 
 namespace {
-
-/* Narkowicz's fit of the ACES curve. */
-Imath::V3f tone_map(const Imath::V3f &light) {
-    Imath::V3f shown;
-    for (int c = 0; c < 3; ++c) {
-        const float x = std::max(light[c], 0.0f) * 0.62f;
-        shown[c] = std::clamp(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 0.0f, 1.0f);
-    }
-    return shown;
-}
 
 /*
  * Shrinks by the mean over each new pixel's footprint, edges by their share: along rows, then again along columns of
@@ -52,15 +43,19 @@ void quantize(const Imath::V3f &colour, uint16_t *to) {
     for (int c = 0; c < 3; ++c) to[c] = uint16_t(std::lround(colour[c] * 65535.0f));
 }
 
-/* libpng itself encodes 16-bit linear light to 8-bit sRGB. */
-void write_linear(const std::string &path, uint32_t width, uint32_t height, const std::vector<uint16_t> &pixels) {
+void write_image(const std::string &path, uint32_t width, uint32_t height, png_uint_32 format, const void *pixels) {
     png_image image = {};
     image.version = PNG_IMAGE_VERSION;
     image.width = width;
     image.height = height;
-    image.format = PNG_FORMAT_LINEAR_RGB;
-    if (!png_image_write_to_file(&image, path.c_str(), 1, pixels.data(), 0, nullptr))
+    image.format = format;
+    if (!png_image_write_to_file(&image, path.c_str(), 1, pixels, 0, nullptr))
         throw std::runtime_error("can't write '" + path + "': " + image.message);
+}
+
+/* libpng itself encodes 16-bit linear light to 8-bit sRGB. */
+void write_linear(const std::string &path, uint32_t width, uint32_t height, const std::vector<uint16_t> &pixels) {
+    write_image(path, width, height, PNG_FORMAT_LINEAR_RGB, pixels.data());
 }
 
 } // namespace
@@ -69,6 +64,10 @@ void write_png(const std::string &path, const Picture &picture) {
     std::vector<uint16_t> pixels(picture.colour.size() * 3);
     for (size_t i = 0; i < picture.colour.size(); ++i) quantize(tone_map(picture.colour[i]), &pixels[3 * i]);
     write_linear(path, picture.width, picture.height, pixels);
+}
+
+void write_png(const std::string &path, uint32_t width, uint32_t height, const std::vector<uint8_t> &pixels) {
+    write_image(path, width, height, PNG_FORMAT_RGB, pixels.data());
 }
 
 ContactSheet::ContactSheet(size_t count) : count_(count) {}

@@ -47,32 +47,34 @@ Imath::V3f ground_colour(const Look &look, const Imath::V3d &position, double di
 }
 
 /* Schlick's Fresnel term times a highlight and the mirrored sky: a coat of varnish. */
-Imath::V3f varnish(float gloss, const Imath::V3f &normal, const Imath::V3f &view, bool sunlit, bool open) {
+Imath::V3f varnish(float gloss, const Imath::V3f &normal, const Imath::V3f &view, bool sunlit, float open) {
     const Imath::V3f mirrored = view - normal * (2 * view.dot(normal));
-    const float fresnel = 0.04f + 0.96f * std::pow(1 - clamp01(-view.dot(normal)), 5.0f);
+    const float graze = 1 - clamp01(-view.dot(normal)), graze2 = graze * graze;
+    const float fresnel = 0.04f + 0.96f * graze2 * graze2 * graze;
     const float toward_sun = clamp01(mirrored.dot(sun_direction));
     const float power = 12 + 180 * gloss * gloss;
     Imath::V3f light(0);
-    if (sunlit) light += sun_light * (std::pow(toward_sun, power) * (power + 2) * 0.02f);
+    if (sunlit && toward_sun > 0.3f) light += sun_light * (std::pow(toward_sun, power) * (power + 2) * 0.02f);
     const Imath::V3f seen = mirrored.y > 0 ? sky(mirrored) : ground_light;
-    light += seen * (open ? 1.0f : 0.25f);
+    light += seen * (0.25f + 0.75f * open);
     return light * (fresnel * gloss);
 }
 
 } // namespace
 
-Imath::V3f shade(const World &world, const Pass &pass, size_t pixel) {
+Imath::V3f shade(const Looks &looks, const Pass &pass, size_t pixel) {
     const Imath::V3f &view = pass.directions[pixel];
     if (!pass.hit(pixel)) return sky(view);
-    const Look &look = world.look(pass.objects[pixel]);
+    const Look &look = looks.of(pass.objects[pixel]);
     const Imath::V3f raw = pass.normals[pixel], geometric = raw.dot(view) > 0 ? -raw : raw;
     const Imath::V3f normal = smooth_normal(look, pass, pixel, geometric);
     const float distance = float(pass.t[pixel]); /* directions have length 1 */
     const bool ground = look.kind == Look::Kind::Ground;
     const Imath::V3f colour = ground ? ground_colour(look, pass.positions[pixel], distance) : look.colour;
 
-    const bool sunlit = pass.sunlit[pixel], open = pass.open[pixel];
-    Imath::V3f light = ambient(normal) * (open ? 1.0f : 0.3f);
+    const bool sunlit = pass.sunlit[pixel];
+    const float open = pass.open[pixel];
+    Imath::V3f light = ambient(normal) * (0.3f + 0.7f * open);
     if (sunlit) light += sun_light * clamp01(normal.dot(sun_direction)) * 0.75f;
     Imath::V3f seen = colour * light;
     if (look.gloss > 0) seen += varnish(look.gloss, normal, view, sunlit, open);

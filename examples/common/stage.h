@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * stage.h: the raygrid scene that the demo plays in, and its twin: the same objects in the brute-force reference.
+ * stage.h: the raygrid scene that all plays in, and its twin: the same objects in the brute-force reference.
  *
  * All changes go through here, many at a time and read where they lie, so that both always hold the same and the time
  * that raygrid takes for them is taken in one place.
@@ -9,7 +9,6 @@
 #define DEMO_STAGE_H
 
 #include "handles.h"
-#include "options.h"
 
 #include <stdbool.h>
 #include <vector>
@@ -26,23 +25,25 @@ struct Form {
     const reference_shape *twin;
 };
 
-/** An object as the demo keeps it. Arrays of these are what raygrid's views look into. */
+/** An object as its owner keeps it. Arrays of these are what raygrid's views look into. */
 struct Body {
     Form form;
     rg_pose pose;
     rg_object object = RG_NO_OBJECT;
 };
 
-/**
- * The box where all begins, and which the swarm drifts out of: the first physical box of the grid. The model lies
- * within a radius of 1 and rises when it is taken apart. Without it the box would be that of what is inserted first.
- */
-constexpr double stage_lo[3] = {-2.8, -1, -2.8}, stage_hi[3] = {2.8, 1.4, 2.8};
+/** How a stage is made. */
+struct StageSetup {
+    rg_grid_config grid;  /* of the scene's own grid */
+    uint32_t workers = 0; /* 0: one a processor */
+    bool twin = false;    /* whether rays will be checked against brute force */
+
+    StageSetup() { check(rg_grid_config_default(&grid, sizeof grid)); }
+};
 
 class Stage {
   public:
-    /** With a twin if any ray is to be checked. */
-    explicit Stage(const Options &options);
+    explicit Stage(const StageSetup &setup);
 
     Form sphere(double radius);
     Form box(const double lo[3], const double hi[3]);

@@ -65,6 +65,7 @@ Parts::Parts(const Model &model, Stage &stage, uint64_t seed) : model_(model), s
         bodies_.push_back(body);
     }
     told_.assign(bodies_.size(), false);
+    released_.assign(bodies_.size(), false);
 
     const double radius = (whole.max - whole.min).length() / 2;
     if (!(radius > 0 && radius < 1e30)) throw std::runtime_error("has no extent, or one beyond all measure");
@@ -116,6 +117,7 @@ Parts::Change Parts::advance(double phase, const Notes &notes) {
     const std::vector<Imath::M44d> transforms = model_.transforms(phase * model_.duration());
     std::vector<bool> present(bodies_.size());
     for (size_t i = 0; i < bodies_.size(); ++i) {
+        if (released_[i]) continue;
         const Model::Part &part = model_.parts()[i];
         set_pose(bodies_[i].pose, transforms[part.node] * to_stage_ * flight(part.node, phase));
         present[i] = is_invertible(bodies_[i].pose);
@@ -131,6 +133,7 @@ Parts::Change Parts::update_presence(const std::vector<bool> &present) {
     /* Runs of parts that have the same thing done to them go in one call: nearly always one run of all. */
     enum class Deed { Nothing, Insert, Move, Remove };
     const auto deed = [&](size_t i) {
+        if (released_[i]) return Deed::Nothing;
         const bool there = bodies_[i].object != RG_NO_OBJECT;
         if (!there) return present[i] ? Deed::Insert : Deed::Nothing;
         return present[i] ? Deed::Move : Deed::Remove;
@@ -148,6 +151,32 @@ Parts::Change Parts::update_presence(const std::vector<bool> &present) {
         }
     }
     return change;
+}
+
+Look Parts::look_of(size_t part) const {
+    const Surface &surface = model_.surfaces()[model_.parts()[part].surface];
+    Look look;
+    look.colour = surface.colour;
+    look.gloss = std::max(surface.gloss, 0.35f);
+    look.surface = surface.normals.empty() ? nullptr : &surface;
+    const float *m = bodies_[part].pose.linear;
+    /* For row vectors a normal goes by the inverse of the linear part for column vectors. */
+    look.normals = Imath::M33f(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]).inverse();
+    return look;
+}
+
+void Parts::paint(Looks &looks) const {
+    for (size_t i = 0; i < bodies_.size(); ++i)
+        if (!released_[i] && bodies_[i].object != RG_NO_OBJECT) looks.set(bodies_[i].object, look_of(i));
+}
+
+bool Parts::release(rg_object object) {
+    for (size_t i = 0; i < bodies_.size(); ++i) {
+        if (released_[i] || bodies_[i].object != object) continue;
+        released_[i] = true;
+        return true;
+    }
+    return false;
 }
 
 } // namespace demo

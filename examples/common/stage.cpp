@@ -12,7 +12,7 @@ namespace {
 rg_pose_views view_poses(const Body *bodies, bool turned) {
     rg_pose_views views;
     check(rg_pose_views_of(&views, sizeof views, &bodies->pose, sizeof(Body)));
-    if (!turned) std::fill_n(views.column, 3, rg_input3{});
+    if (!turned) std::fill_n(views.column, 3, rg_input3{}), views.scale = rg_input{};
     return views;
 }
 
@@ -22,20 +22,15 @@ rg_input view_objects(const Body *bodies) {
 
 } // namespace
 
-Stage::Stage(const Options &options) {
-    rg_grid_config grid;
-    check(rg_grid_config_default(&grid, sizeof grid));
-    grid.kind = options.grid;
-    std::copy_n(stage_lo, 3, grid.lo);
-    std::copy_n(stage_hi, 3, grid.hi);
+Stage::Stage(const StageSetup &setup) {
     rg_scene_config config;
     check(rg_scene_config_default(&config, sizeof config));
-    config.workers = options.workers;
-    config.grid = &grid;
+    config.workers = setup.workers;
+    config.grid = &setup.grid;
     rg_scene *scene = nullptr;
     check(rg_scene_create(&config, &scene));
     scene_.reset(scene);
-    if (options.sample > 0) twin_.reset(reference_create());
+    if (setup.twin) twin_.reset(reference_create());
 }
 
 Form Stage::own(rg_shape *shape, const reference_shape *twin) {

@@ -24,6 +24,9 @@ void write_exr(const std::string &path, const Picture &picture);
 /** Writes an 8-bit sRGB PNG, the light compressed to what a screen shows. Throws std::runtime_error. */
 void write_png(const std::string &path, const Picture &picture);
 
+/** Writes pixels as a screen has them, 8-bit sRGB: R, G, B, row by row. Throws std::runtime_error. */
+void write_png(const std::string &path, uint32_t width, uint32_t height, const std::vector<uint8_t> &pixels);
+
 /** Many small pictures in one, side by side as they were added. */
 class ContactSheet {
   public:

@@ -3,13 +3,13 @@
 #ifndef DEMO_SHADE_H
 #define DEMO_SHADE_H
 
+#include "look.h"
 #include "pass.h"
-#include "world.h"
 
 namespace demo {
 
 /** What a camera sees through one pixel of a pass. */
-Imath::V3f shade(const World &world, const Pass &pass, size_t pixel);
+Imath::V3f shade(const Looks &looks, const Pass &pass, size_t pixel);
 
 } // namespace demo
 

@@ -4,7 +4,7 @@
 #define DEMO_PARTS_H
 
 #include "gltf_model.h"
-#include "stage.h"
+#include "look.h"
 
 #include <Imath/ImathBox.h>
 
@@ -28,8 +28,11 @@ class Parts {
      */
     Change advance(double phase, const Notes &notes);
 
-    /** One for each part of the model. */
-    const std::vector<Body> &bodies() const { return bodies_; }
+    /** Tells how those look that are in the scene; again after each advance(), as smooth normals turn with them. */
+    void paint(Looks &looks) const;
+
+    /** Takes a part out of the play, for good, if the object is one: it stays where it is. */
+    bool release(rg_object object);
 
     /** The lowest point of the whole model. */
     double floor() const { return floor_; }
@@ -47,13 +50,14 @@ class Parts {
     void plan(const std::vector<Imath::Box3d> &boxes, uint64_t seed);
     Imath::M44d flight(size_t node, double phase) const;
     Change update_presence(const std::vector<bool> &present);
+    Look look_of(size_t part) const;
 
     const Model &model_;
     Stage &stage_;
     Imath::M44d to_stage_;        /* from the model's world to the demo's */
     std::vector<Flight> flights_; /* one a node; unused for nodes without parts */
-    std::vector<Body> bodies_;
-    std::vector<bool> told_;
+    std::vector<Body> bodies_;    /* one a part of the model */
+    std::vector<bool> told_, released_;
     double floor_ = -1;
 };
 
