@@ -108,6 +108,7 @@ void Viewer::handle_key(SDL_Keycode key) {
         break;
     case SDLK_t:
         toggle(overlays_.text);
+        overlays_.legend = overlays_.text;
         break;
     case SDLK_h:
         toggle(overlays_.help);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "options.h"
 
+#include <algorithm>
 #include <getopt.h>
 #include <sstream>
 
@@ -75,24 +76,27 @@ std::vector<double> read_place(const char *name, const std::string &text) {
     return place;
 }
 
+struct OverlayWord {
+    const char *word;
+    bool Overlays::*overlay;
+};
+const OverlayWord overlay_words[] = {
+    {"boxes", &Overlays::boxes}, {"cells", &Overlays::cells}, {"levels", &Overlays::levels},
+    {"heat", &Overlays::heat},   {"text", &Overlays::text},   {"legend", &Overlays::legend},
+    {"help", &Overlays::help},
+};
+
 Overlays read_overlays(const std::string &text) {
     Overlays overlays;
-    overlays.text = false;
+    overlays.text = overlays.legend = false;
     for (const std::string &word : split(text)) {
-        if (word == "boxes")
-            overlays.boxes = true;
-        else if (word == "cells")
-            overlays.cells = true;
-        else if (word == "levels")
-            overlays.levels = true;
-        else if (word == "heat")
-            overlays.heat = true;
-        else if (word == "text")
-            overlays.text = true;
-        else if (word == "help")
-            overlays.help = true;
+        const auto found = std::find_if(std::begin(overlay_words), std::end(overlay_words),
+                                        [&word](const OverlayWord &known) { return word == known.word; });
+        if (found != std::end(overlay_words))
+            overlays.*found->overlay = true;
         else if (word != "none")
-            throw UsageError("--show wants boxes, cells, levels, heat, text, help or none, not '" + word + "'");
+            throw UsageError("--show wants boxes, cells, levels, heat, text, legend, help or none, not '" + word +
+                             "'");
     }
     return overlays;
 }
@@ -212,7 +216,7 @@ std::string usage() {
            "  --time SECONDS     of the animation at the first frame (0)\n"
            "  --paused           the animation rests, until space is pressed\n"
            "  --eye X,Y,Z        where the camera is      --target X,Y,Z  what it looks at\n"
-           "  --show LIST        boxes,cells,levels,heat,text,help or none (text)\n\n"
+           "  --show LIST        boxes,cells,levels,heat,text,legend,help or none (text,legend)\n\n"
            "how\n"
            "  --size WxH         pixels of the window (512x512)\n"
            "  --workers N        threads that trace; 0: one a processor (0)\n"

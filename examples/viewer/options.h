@@ -17,6 +17,7 @@ struct Overlays {
     bool levels = false; /* the level at which each object is listed */
     bool heat = false;   /* cells that the ray of each pixel looked into */
     bool text = true;    /* times and counts */
+    bool legend = true;  /* what the colours of the others mean */
     bool help = false;   /* the keys */
 };
 

@@ -32,13 +32,10 @@ uint32_t workers_of(const Options &options) {
 }
 
 const char *const keys[] = {
-    "W A S D  fly           E Q    up, down      shift  faster",
-    "mouse    left: drag    right: turn          wheel  nearer, farther",
-    "I        insert a ball B      insert a box  X      remove",
-    "G        kind of grid  [ ]    resolution    R      rebuild",
-    "1        boxes         2      cells         3      levels      4  heat",
-    "space    pause         home   camera back   T      text        H  keys",
-    "P        save PNG      O      save EXR      esc    end",
+    "W A S D fly, E Q up and down, shift: faster",    "left button drags, wheel: nearer, farther",
+    "right button turns, home: camera back",          "I inserts a ball, B a box, X removes",
+    "G kind of grid, [ ] its resolution, R rebuilds", "1 boxes, 2 cells, 3 levels, 4 heat, T text",
+    "space pauses, P saves PNG, O EXR, esc ends",
 };
 
 /* What the frames take and what the grid holds. */
@@ -53,8 +50,8 @@ std::vector<std::string> status(const FrameTimes &times, const rg_grid_report &g
     if (grid.resolution[0] > 0)
         std::snprintf(cells, sizeof cells, " %ux%ux%u", unsigned(grid.resolution[0]), unsigned(grid.resolution[1]),
                       unsigned(grid.resolution[2]));
-    std::snprintf(lines[2], sizeof lines[2], "%s grid%s: %llu objects, %u levels, %llu rebuilds", names[grid.kind],
-                  cells, static_cast<unsigned long long>(grid.objects), unsigned(grid.levels),
+    std::snprintf(lines[2], sizeof lines[2], "%llu objects, %s%s, rebuilt %llux",
+                  static_cast<unsigned long long>(grid.objects), names[grid.kind], cells,
                   static_cast<unsigned long long>(grid.rebuilds));
     return {lines[0], lines[1], lines[2]};
 }
@@ -145,7 +142,7 @@ void Viewer::trace(FrameTimes &times) {
 void Viewer::draw() {
     canvas_.show(renderer_->picture(), crew_);
     overlay_.draw(canvas_, world_, overlays_, camera(), renderer_->picture(), hand_.held());
-    overlay_.write_legend(canvas_, overlays_, letters_);
+    if (overlays_.legend) overlay_.write_legend(canvas_, overlays_, letters_);
     write_text();
 }
 
