@@ -13,6 +13,7 @@ from pictures import VIEWER, Light, Picture, read_png
 
 WIDTH, HEIGHT = 200, 160
 GROUND = 821  # its id in a picture, after the 820 spheres of a flake of three generations
+LEAKS = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'leaks.txt')
 PATIENCE = 60  # seconds for what takes a fraction of one
 
 
@@ -32,7 +33,8 @@ class Screen:
         if not number:
             self.close()
             raise RuntimeError('Xvfb does not start')
-        self.environment = {**os.environ, 'DISPLAY': ':' + number.strip(), 'SDL_VIDEODRIVER': 'x11'}
+        self.environment = {**os.environ, 'DISPLAY': ':' + number.strip(), 'SDL_VIDEODRIVER': 'x11',
+                            'LSAN_OPTIONS': f'suppressions="{LEAKS}":print_suppressions=0'}
 
     def close(self):
         self.server.terminate()
@@ -53,6 +55,8 @@ class Screen:
 
 @unittest.skipUnless(shutil.which('Xvfb') and shutil.which('xdotool'), 'Xvfb and xdotool are not there')
 class Window(unittest.TestCase):
+    usual = '--flake', '3', '--size', f'{WIDTH}x{HEIGHT}', '--show', 'none'
+
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -61,9 +65,8 @@ class Window(unittest.TestCase):
         self.shots = 0
 
     def open(self, *options):
-        self.viewer = subprocess.Popen(
-            [VIEWER, '--flake', '3', '--size', f'{WIDTH}x{HEIGHT}', '--show', 'none', *options],
-            env=self.screen.environment, cwd=self.folder.name, stdout=subprocess.PIPE, text=True, bufsize=1)
+        self.viewer = subprocess.Popen([VIEWER, *self.usual, *options], env=self.screen.environment,
+                                       cwd=self.folder.name, stdout=subprocess.PIPE, text=True, bufsize=1)
         self.addCleanup(self.end)
         self.window = self.find()
         self.tool('windowfocus', '--sync', self.window)
@@ -121,8 +124,8 @@ class Window(unittest.TestCase):
         while self.save('p').difference(self.on_screen()) > 0:  # until it has gathered its samples
             pass
         alone = os.path.join(self.folder.name, 'alone.png')
-        subprocess.run([VIEWER, '--flake', '3', '--size', f'{WIDTH}x{HEIGHT}', '--show', 'none', *still, '--no-window',
-                        '--frames', '12', '--shot', alone], check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
+        command = [VIEWER, *self.usual, *still, '--no-window', '--frames', '12', '--shot', alone]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=PATIENCE)
         shown, expected = self.on_screen(), read_png(alone)
         self.assertLess(shown.difference(expected), 0.5)
         self.key('4')  # the heat is nothing like it
