@@ -69,7 +69,7 @@ void Overlay::survey(const World &world, const Pass &pass, const Overlays &overl
     if (overlays.levels || overlays.cells) survey_levels(world, pass);
 }
 
-/* The scale ends at a power of two above all but the hottest thousandth, so that it does not change all the time. */
+/* The scale ends at a power of two above all but the hottest hundredth, so that it does not change all the time. */
 void Overlay::survey_heat(const Pass &pass) {
     heat_.resize(pass.pixels());
     uint64_t sum = 0;
@@ -79,7 +79,7 @@ void Overlay::survey_heat(const Pass &pass) {
     }
     mean_heat_ = double(sum) / double(pass.pixels());
     std::vector<uint32_t> sorted = heat_;
-    const auto hot = sorted.begin() + ptrdiff_t(sorted.size() * 999 / 1000);
+    const auto hot = sorted.begin() + ptrdiff_t(sorted.size() * 99 / 100);
     std::nth_element(sorted.begin(), hot, sorted.end());
     for (hottest_ = 1; hottest_ < *hot;) hottest_ *= 2;
 }

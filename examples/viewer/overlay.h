@@ -40,9 +40,6 @@ class Overlay {
     /** What the colours mean: lines at the lower left. */
     void write_legend(Canvas &canvas, const Overlays &overlays, const Letters &letters) const;
 
-    /** Levels that are seen: bit l for level l. */
-    uint32_t levels_seen() const { return levels_seen_; }
-
   private:
     void survey_heat(const demo::Pass &pass);
     void survey_levels(const World &world, const demo::Pass &pass);
@@ -56,7 +53,7 @@ class Overlay {
     uint32_t hottest_ = 1;       /* where the scale ends */
     double mean_heat_ = 0;
     std::vector<uint8_t> levels_; /* by pixel, row by row */
-    uint32_t levels_seen_ = 0;
+    uint32_t levels_seen_ = 0;   /* bit l for level l */
 };
 
 } // namespace viewer
