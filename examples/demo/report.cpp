@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "report.h"
 
+#include "median.h"
 #include "text.h"
 
-#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <unistd.h>
@@ -15,18 +15,6 @@ namespace {
 double rays_per_second(const Frame &frame) {
     const double seconds = frame.cost.primary + frame.cost.shadow;
     return double(frame.cost.primary_rays + frame.cost.shadow_rays) / std::max(seconds, 1e-9);
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
-template <typename Value> double median_of(const std::vector<Frame> &frames, Value value) {
-    std::vector<double> values;
-    for (const Frame &frame : frames) values.push_back(value(frame));
-    return median(values);
 }
 
 const char header[] = "frame objects    in   out  update ms  primary ms  shadow ms  Mrays/s  rebuilds  tiles  checked"

@@ -1,25 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include "meter.h"
 
-#include <algorithm>
-#include <cstddef>
+#include "median.h"
+
 #include <cstdio>
 #include <cstdlib>
-#include <vector>
 
 namespace viewer {
+
+using demo::median_of;
 
 namespace {
 
 constexpr size_t remembered = 10000, shown = 20;
-
-template <typename Value> double median_of(const std::deque<FrameTimes> &frames, Value value) {
-    std::vector<double> values;
-    for (const FrameTimes &frame : frames) values.push_back(value(frame));
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 } // namespace
 
@@ -57,13 +50,14 @@ std::string Meter::report(uint32_t width, uint32_t height, uint32_t workers) con
     std::snprintf(
         text, sizeof text,
         "%zu frames of %ux%u, %u workers: %.1f frames/s; median %.2f ms, of which update %.2f, primary rays "
-        "%.2f, shadow rays %.2f; %.1f Mrays/s while tracing; load average %.2f\n",
+        "%.2f, shadow rays %.2f; %.1f Mrays/s while tracing; %.2f ms of processor time a frame; load average %.2f\n",
         frames_.size(), unsigned(width), unsigned(height), unsigned(workers), double(frames_.size()) / seconds,
         1e3 * median_of(frames_, [](const FrameTimes &frame) { return frame.all; }),
         1e3 * median_of(frames_, [](const FrameTimes &frame) { return frame.update; }),
         1e3 * median_of(frames_, [](const FrameTimes &frame) { return frame.primary; }),
         1e3 * median_of(frames_, [](const FrameTimes &frame) { return frame.sun; }),
-        1e-6 * rays / std::max(tracing, 1e-9), load[0]);
+        1e-6 * rays / std::max(tracing, 1e-9),
+        1e3 * median_of(frames_, [](const FrameTimes &frame) { return frame.processor; }), load[0]);
     return text;
 }
 

@@ -12,6 +12,7 @@ namespace viewer {
 /** Seconds of one frame, and what they were spent on. */
 struct FrameTimes {
     double all = 0;
+    double processor = 0;        /* of all threads together: what is left when others use the machine, too */
     double update = 0;           /* raygrid's changes of the scene */
     double primary = 0, sun = 0; /* raygrid's traces */
     uint64_t rays = 0;

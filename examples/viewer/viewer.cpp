@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <thread>
 
@@ -82,6 +83,7 @@ void Viewer::frame(uint32_t number) {
     const double begin = clock_.seconds();
     const double seconds = options_.fixed ? fixed_seconds : std::min(begin - last_, longest_step);
     last_ = begin;
+    const std::clock_t processor = std::clock();
     FrameTimes times;
     script_.play(number, shots_);
     if (number + 1 == options_.frames) shots_.insert(shots_.end(), options_.shots.begin(), options_.shots.end());
@@ -93,6 +95,7 @@ void Viewer::frame(uint32_t number) {
     draw();
     window_.show(canvas_);
     times.all = clock_.seconds() - begin;
+    times.processor = double(std::clock() - processor) / CLOCKS_PER_SEC;
     if (times.rays > 0) meter_.add(times);
     write_shots();
 }
