@@ -3,9 +3,8 @@
 #ifndef RAYGRID_BENCH_BENCH_H
 #define RAYGRID_BENCH_BENCH_H
 
-#include "own.h"
-#include "peer.h"
 #include "report.h"
+#include "verdict.h"
 
 /** What the command line says. A list of names is separated by commas; NULL: all. */
 struct bench_options {
@@ -32,13 +31,9 @@ struct bench_run {
     struct bench_report report;
 };
 
-/**
- * How wrong raygrid's answers are, spoilt before if the options say so; how wrong the peer's are.
- */
+/** How wrong raygrid's answers are, spoilt before if the options say so. */
 struct exact_error bench_judge_own(const struct bench_run *run, struct exact_sample *sample, const struct own *own,
                                    const struct bench_answers *answers);
-struct exact_error bench_judge_peer(struct exact_sample *sample, const struct peer *peer,
-                                    const struct bench_answers *answers);
 
 /** The scene that is the glTF file of the options, of whatever size that has. */
 #define BENCH_GLTF_SCENE "gltf"

@@ -113,7 +113,7 @@ static void report(struct film *film, const char *what, const struct bench_duel 
     struct exact_error error = bench_judge_own(run, sample, film->own, &film->own_answers), peer_error = {0};
     char way[64];
     if (film->peer) {
-        peer_error = bench_judge_peer(sample, film->peer, &film->peer_answers);
+        peer_error = verdict_of_peer(sample, film->peer, &film->peer_answers);
         snprintf(way, sizeof way, "%s, %s", PEER_BUILD_NAMES[peer_build_of(film->peer)],
                  peer_way_name(film->primary_way));
         line.peer_error = &peer_error;

@@ -66,28 +66,9 @@ static void run_section(struct bench_run *run, const struct section *section) {
 }
 
 static void name_versions(struct bench_report *report, const struct embree_api *api) {
-    uint32_t version = rg_version();
-    snprintf(report->own, sizeof report->own, "%u.%u.%u", version / 1000000, version / 1000 % 1000, version % 1000);
-    snprintf(report->compiler, sizeof report->compiler, "%s",
-#if defined(__clang__)
-             "clang " __clang_version__
-#else
-             "gcc " __VERSION__
-#endif
-    );
-    if (api) {
-        snprintf(report->peer, sizeof report->peer, "Embree %d.%d.%d", api->version / 10000, api->version / 100 % 100,
-                 api->version % 100);
-    }
-    static const char *const names[] = {"portable", "sse2", "avx2", "avx512", "neon"};
-    rg_scene_report scene_report = {.size = sizeof scene_report};
-    rg_scene *scene;
-    own_check(rg_scene_create(NULL, &scene));
-    own_check(rg_scene_stats(scene, &scene_report));
-    own_check(rg_scene_destroy(&scene));
-    snprintf(report->isa, sizeof report->isa, "%s", names[scene_report.isa]);
-    printf("raygrid %s (instructions: %s), %s; peer: %s\n", report->own, report->isa, report->compiler,
-           api ? report->peer : "none");
+    report->versions = bench_versions_of(api);
+    const struct bench_versions *v = &report->versions;
+    printf("raygrid %s (instructions: %s), %s; peer: %s\n", v->own, v->isa, v->compiler, api ? v->peer : "none");
 }
 
 int main(int argc, char **argv) {

@@ -110,6 +110,7 @@ static json_t *spread_of(const struct bench_spread *s) {
 }
 
 static void write_line(const struct bench_report *report, const struct bench_line *line) {
+    const struct bench_versions *v = &report->versions;
     int state = reached(line);
     json_t *object = json_object();
     json_object_set_new(object, "name", json_string(line->name));
@@ -129,11 +130,11 @@ static void write_line(const struct bench_report *report, const struct bench_lin
     json_object_set_new(object, "bytes_per_object", number(line->bytes));
     json_object_set_new(object, "peer_bytes_per_object", number(line->peer_bytes));
     json_object_set_new(object, "threads", json_integer(line->threads));
-    json_object_set_new(object, "isa", json_string(report->isa));
+    json_object_set_new(object, "isa", json_string(v->isa));
     json_object_set_new(object, "peer_way", line->peer_way ? json_string(line->peer_way) : json_null());
     json_object_set_new(object, "versions",
-                        json_pack("{s:s, s:s?, s:s}", "raygrid", report->own, "peer",
-                                  report->peer[0] ? report->peer : NULL, "compiler", report->compiler));
+                        json_pack("{s:s, s:s?, s:s}", "raygrid", v->own, "peer", v->peer[0] ? v->peer : NULL,
+                                  "compiler", v->compiler));
     json_dumpf(object, report->json, JSON_COMPACT | JSON_REAL_PRECISION(6));
     fputc('\n', report->json);
     fflush(report->json);

@@ -6,13 +6,14 @@
 #include "exact.h"
 #include "goals.h"
 #include "spread.h"
+#include "versions.h"
 
 #include <jansson.h>
 #include <stdio.h>
 
 struct bench_report {
     FILE *json; /* NULL: only the table */
-    char peer[64], own[64], compiler[64], isa[32];
+    struct bench_versions versions;
     int lines, wrong, peer_wrong, goals, missed;
     const char *section; /* printed last */
 };

@@ -116,7 +116,7 @@ static void measure_mode(struct bench_run *run, struct contest *contest, const s
     struct exact_error error = bench_judge_own(run, sample, contest->own, &contest->own_answers);
     struct exact_error peer_error = {0};
     if (contest->peer) {
-        peer_error = bench_judge_peer(sample, contest->peer, &contest->peer_answers);
+        peer_error = verdict_of_peer(sample, contest->peer, &contest->peer_answers);
         line.peer_error = &peer_error;
     }
     line.unit = "Mrays/s";

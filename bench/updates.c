@@ -168,7 +168,7 @@ static void report(struct changes *changes, const char *what, const struct bench
     struct exact_error peer_error = {0};
     if (changes->peer) {
         peer_trace(changes->peer, changes->probe, (struct peer_way){0, false}, &changes->answers);
-        peer_error = bench_judge_peer(sample, changes->peer, &changes->answers);
+        peer_error = verdict_of_peer(sample, changes->peer, &changes->answers);
         line.peer_error = &peer_error;
         line.peer_way = PEER_BUILD_NAMES[peer_build_of(changes->peer)];
         line.peer_bytes = peer_bytes_per_object(changes->peer);
