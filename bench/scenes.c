@@ -104,8 +104,7 @@ static void turn(uint64_t *random, float m[9]) {
     for (int k = 0; k < 9; k++) m[k] = (float)rotation[k];
 }
 
-/* All but spheres, which no host would turn. */
-static void turn_all(struct bench_scene *scene) {
+void bench_turn_all(struct bench_scene *scene) {
     static const float STRAIGHT[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     scene->linears = bench_allocate(scene->count, sizeof *scene->linears);
     for (uint32_t i = 0; i < scene->count; i++) {
@@ -117,7 +116,7 @@ static void turn_all(struct bench_scene *scene) {
     }
 }
 
-static void spread_shapes(struct bench_scene *scene) {
+void bench_spread_shapes(struct bench_scene *scene) {
     scene->shape_of = bench_allocate(scene->count, sizeof *scene->shape_of);
     for (uint32_t i = 0; i < scene->count; i++) {
         scene->shape_of[i] = (uint8_t)(scene->shape_count * bench_random(&scene->random));
@@ -189,10 +188,10 @@ static void make_even(struct bench_scene *scene) {
     while (strcmp(scene->name, "capsules") == 0 && scene->shape_count < FORMS) {
         add_shape(scene, capsule(&scene->random));
     }
-    if (scene->shape_count > 1) spread_shapes(scene);
+    if (scene->shape_count > 1) bench_spread_shapes(scene);
     place_evenly(scene, 0, UNIT_LO, UNIT_HI);
     fill(scene, 0, 1);
-    if (strcmp(scene->name, "uniform") != 0) turn_all(scene);
+    if (strcmp(scene->name, "uniform") != 0) bench_turn_all(scene);
 }
 
 void bench_settle(struct bench_scene *scene) {

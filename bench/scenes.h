@@ -52,7 +52,10 @@ extern const char *const BENCH_SCENES[];
 /** One of BENCH_SCENES. */
 struct bench_scene *bench_scene_create(const char *name, uint32_t count);
 
-/** Makes the present positions the homes; for those who make a scene. */
+/* For those who make a scene: gives each body one of the shapes; turns all but spheres, which no host would turn;
+ * makes the present positions the homes. */
+void bench_spread_shapes(struct bench_scene *scene);
+void bench_turn_all(struct bench_scene *scene);
 void bench_settle(struct bench_scene *scene);
 
 void bench_scene_destroy(struct bench_scene *scene);
