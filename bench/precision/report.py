@@ -4,13 +4,12 @@
 import argparse
 import json
 import pathlib
+import sys
 
-import matplotlib
-matplotlib.use('Agg')
-import matplotlib.pyplot as plt  # noqa: E402: the backend is chosen first
-from matplotlib.lines import Line2D  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from plots import plt, replace_figures, save  # noqa: E402: found only now
+from matplotlib.lines import Line2D  # noqa: E402: plots chooses the backend first
 
-BEGIN, END = '<!-- figures: made by script/precision -->', '<!-- end of figures -->'
 ROUNDINGS, PROMISE = 'by four roundings of floats', 'by the promise'
 LOOKS = {  # marker and colour of each side
     'loose': ('o', '#1b6ca8'), 'uniform': ('s', '#4aa3c7'), 'hierarchical': ('D', '#7b5ea7'),
@@ -73,13 +72,6 @@ def demo_table(lines):
     return '\n'.join(rows)
 
 
-def save(figure, folder, name):
-    # The same input gives the same file: no date, no random names.
-    figure.savefig(folder / f'{name}.svg', metadata={'Date': None})
-    figure.savefig(folder / f'{name}.png', dpi=110, metadata={'Software': None})
-    plt.close(figure)
-
-
 def mark(axes, line, top):
     """A side's place: time across, error up. What is wrong is written beside it."""
     marker, colour = LOOKS[line['side']]
@@ -134,26 +126,20 @@ def draw_demo(lines, folder):
     save(figure, folder, 'demo')
 
 
-def replace_figures(page, text):
-    before, rest = page.split(BEGIN)
-    after = rest.split(END)[1]
-    return f'{before}{BEGIN}\n\n{text}\n\n{END}{after}'
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ('figures', 'demo', 'page', 'folder'):
         parser.add_argument(name, type=pathlib.Path)
     arguments = parser.parse_args()
     figures, demo = lines_of(arguments.figures), lines_of(arguments.demo)
-    matplotlib.rcParams['svg.hashsalt'] = 'raygrid'
     arguments.folder.mkdir(parents=True, exist_ok=True)
     draw_errors(figures, arguments.folder)
     text = table(figures)
     if demo:
         draw_demo(demo, arguments.folder)
         text += '\n\n' + demo_table(demo)
-    arguments.page.write_text(replace_figures(arguments.page.read_text(encoding='utf-8'), text), encoding='utf-8')
+    page = replace_figures(arguments.page.read_text(encoding='utf-8'), 'script/precision', text)
+    arguments.page.write_text(page, encoding='utf-8')
     for name, lines in (('figures', figures), ('demo', demo)):
         (arguments.folder / f'{name}.json').write_text(json.dumps(lines, indent=1) + '\n', encoding='utf-8')
 
