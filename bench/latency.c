@@ -209,11 +209,6 @@ struct manner {
     uint32_t workers;
 };
 
-const char *bench_kind_name(rg_grid_kind kind) {
-    static const char *const names[] = {"default", "uniform", "hierarchical", "loose"};
-    return names[kind];
-}
-
 /* What becomes of a scene. */
 struct story {
     const char *name;
@@ -227,7 +222,8 @@ static bool life_begin(struct life *life, struct bench_run *run, const char *sce
     if (!life->bodies) return false;
     life->run = run;
     life->turn = 0;
-    life->own = own_create_empty(life->bodies, manner.workers, manner.kind);
+    const rg_grid_config grid = {.size = sizeof grid, .kind = manner.kind};
+    life->own = own_create_empty(life->bodies, manner.workers, &grid);
     life->present = 0;
     if (!empty) {
         own_fill(life->own);
@@ -243,7 +239,7 @@ static void life_end(struct life *life) {
 }
 
 static void name_life(struct life *life, struct manner manner, const char *what) {
-    snprintf(life->what, sizeof life->what, "%s, %u worker%s, %s", bench_kind_name(manner.kind), manner.workers,
+    snprintf(life->what, sizeof life->what, "%s, %u worker%s, %s", own_kind_name(manner.kind), manner.workers,
              manner.workers > 1 ? "s" : "", what);
 }
 
@@ -297,12 +293,6 @@ static void grow(struct life *life, rg_grid_kind kind) {
     }
 }
 
-rg_grid_report bench_grid_report(const struct own *own) {
-    rg_grid_report report = {.size = sizeof report};
-    own_check(rg_grid_stats(own->scene, RG_GRID_OF_SCENE, &report));
-    return report;
-}
-
 void bench_drift(struct bench_scene *bodies, uint32_t body, rg_grid_kind kind) {
     double *x[2] = {&bodies->homes[body][0], &bodies->positions[body][0]};
     for (int i = 0; i < 2; i++)
@@ -313,7 +303,7 @@ void bench_drift(struct bench_scene *bodies, uint32_t body, rg_grid_kind kind) {
  * of its calls begins the rebuild. */
 static void pass_through_rebuild(struct life *life, rg_grid_kind kind) {
     uint32_t count = life->bodies->count;
-    uint64_t before = bench_grid_report(life->own).rebuilds, most = (uint64_t)LONGEST_CALLS * count + 10000;
+    uint64_t before = own_grid_report(life->own).rebuilds, most = (uint64_t)LONGEST_CALLS * count + 10000;
     for (uint32_t i = 0; i < count; i++) {
         double to[3];
         bench_drift(life->bodies, i, kind);
@@ -323,12 +313,12 @@ static void pass_through_rebuild(struct life *life, rg_grid_kind kind) {
     for (uint64_t i = 0; i < most; i++) {
         step(life);
         if (i % LOOK_EVERY) continue;
-        rg_grid_report report = bench_grid_report(life->own);
+        rg_grid_report report = own_grid_report(life->own);
         if (!report.rebuilding && report.rebuilds > before) break;
     }
     /* What was the grid is given back. */
     for (uint32_t i = 0; i < count / 8; i++) step(life);
-    if (bench_grid_report(life->own).rebuilds == before) fprintf(stderr, "%s: there was none\n", life->what);
+    if (own_grid_report(life->own).rebuilds == before) fprintf(stderr, "%s: there was none\n", life->what);
 }
 
 static const struct story STORIES[] = {
@@ -451,7 +441,7 @@ void bench_latency(struct bench_run *run, const char *scene, uint32_t count) {
     if (strcmp(scene, "uniform") != 0) return;
     idle(run, scene, count);
     for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
-        for (uint32_t workers = 2; workers > 0 && bench_wanted(run->options.modes, bench_kind_name(KINDS[k]));
+        for (uint32_t workers = 2; workers > 0 && bench_wanted(run->options.modes, own_kind_name(KINDS[k]));
              workers--) {
             const struct manner manner = {KINDS[k], workers};
             for (size_t s = 0; s < sizeof STORIES / sizeof *STORIES; s++)

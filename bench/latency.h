@@ -15,9 +15,6 @@ enum { BENCH_DRIFT = 8, BENCH_SPREAD = 4 };
 /** Takes a body there, and its home with it; the scene is told by others. */
 void bench_drift(struct bench_scene *bodies, uint32_t body, rg_grid_kind kind);
 
-const char *bench_kind_name(rg_grid_kind kind);
-rg_grid_report bench_grid_report(const struct own *own);
-
 /** Frames while the grid is quiet and while it is rebuilt, and the memory that the rebuild takes. */
 void bench_rebuild_frames(struct bench_run *run, const char *scene, uint32_t count, rg_grid_kind kind,
                           uint32_t workers);

@@ -83,16 +83,13 @@ void own_fill(struct own *own) {
     free(shapes);
 }
 
-struct own *own_create_empty(const struct bench_scene *bodies, uint32_t workers, rg_grid_kind kind) {
+struct own *own_create_empty(const struct bench_scene *bodies, uint32_t workers, const rg_grid_config *grid) {
     struct own *own = bench_allocate(1, sizeof *own);
     rg_scene_config config;
-    rg_grid_config grid;
     own->bodies = bodies;
-    own_check(rg_grid_config_default(&grid, sizeof grid));
-    grid.kind = kind;
     own_check(rg_scene_config_default(&config, sizeof config));
     config.workers = workers;
-    config.grid = &grid;
+    config.grid = grid;
     own_check(rg_scene_create(&config, &own->scene));
     own->shapes = bench_allocate((size_t)bodies->shape_count, sizeof(rg_shape *));
     for (int s = 0; s < bodies->shape_count; s++) own->shapes[s] = create_shape(&bodies->shapes[s]);
@@ -101,7 +98,7 @@ struct own *own_create_empty(const struct bench_scene *bodies, uint32_t workers,
 }
 
 struct own *own_create(const struct bench_scene *bodies, uint32_t workers) {
-    struct own *own = own_create_empty(bodies, workers, RG_GRID_DEFAULT);
+    struct own *own = own_create_empty(bodies, workers, NULL);
     own_fill(own);
     return own;
 }
@@ -188,4 +185,15 @@ double own_bytes_per_object(const struct own *own) {
         report.bytes += shape.bytes;
     }
     return (double)report.bytes / (double)own->bodies->size;
+}
+
+rg_grid_report own_grid_report(const struct own *own) {
+    rg_grid_report report = {.size = sizeof report};
+    own_check(rg_grid_stats(own->scene, RG_GRID_OF_SCENE, &report));
+    return report;
+}
+
+const char *own_kind_name(rg_grid_kind kind) {
+    static const char *const NAMES[] = {"default", "uniform", "hierarchical", "loose"};
+    return NAMES[kind];
 }

@@ -19,8 +19,8 @@ struct own {
 struct own *own_create(const struct bench_scene *bodies, uint32_t workers);
 void own_destroy(struct own *own);
 
-/** The same in two steps: without a body in it, its grid of that kind; then all inserted at once. */
-struct own *own_create_empty(const struct bench_scene *bodies, uint32_t workers, rg_grid_kind kind);
+/** The same in two steps: without a body in it, with such a grid (NULL: the default); then all inserted at once. */
+struct own *own_create_empty(const struct bench_scene *bodies, uint32_t workers, const rg_grid_config *grid);
 void own_fill(struct own *own);
 
 /** The rays where they lie. */
@@ -48,6 +48,10 @@ void own_move_many(struct own *own, const rg_object *objects, double (*positions
 
 /** The scene and its shapes. */
 double own_bytes_per_object(const struct own *own);
+
+/** What is known of the scene's grid; what its kind is called. */
+rg_grid_report own_grid_report(const struct own *own);
+const char *own_kind_name(rg_grid_kind kind);
 
 /** Prints what was wrong and ends the benchmark, unless the result is RG_OK. */
 void own_check(rg_result result);

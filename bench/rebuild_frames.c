@@ -75,14 +75,14 @@ static void drift(struct show *show) {
 }
 
 static void film(struct show *show) {
-    uint64_t before = bench_grid_report(show->own).rebuilds;
+    uint64_t before = own_grid_report(show->own).rebuilds;
     look_at_memory(show);
     show->bytes = show->peak;
     drift(show);
     for (int i = 0; i < FRAMES && show->during_count < FRAMES; i++) {
-        bool began = bench_grid_report(show->own).rebuilding;
+        bool began = own_grid_report(show->own).rebuilding;
         double seconds = frame(show);
-        rg_grid_report after = bench_grid_report(show->own);
+        rg_grid_report after = own_grid_report(show->own);
         if (began && after.rebuilding) show->during[show->during_count++] = seconds;
         if (!after.rebuilding && after.rebuilds > before) break;
     }
@@ -130,14 +130,15 @@ void bench_rebuild_frames(struct bench_run *run, const char *scene, uint32_t cou
     show->run = run;
     show->bodies = bodies;
     show->kind = kind;
-    show->own = own_create_empty(bodies, workers, kind);
+    const rg_grid_config grid = {.size = sizeof grid, .kind = kind};
+    show->own = own_create_empty(bodies, workers, &grid);
     own_fill(show->own);
     show->moved = count / 100;
     show->targets = bench_allocate(count, sizeof *show->targets);
     show->rays = bench_primary_rays(bodies, run->options.effort.side, false);
     show->answers = bench_answers_create(show->rays->count);
     film(show);
-    snprintf(what, sizeof what, "%s, %u worker%s, while it is rebuilt", bench_kind_name(kind), workers,
+    snprintf(what, sizeof what, "%s, %u worker%s, while it is rebuilt", own_kind_name(kind), workers,
              workers > 1 ? "s" : "");
     report(show, what);
     own_destroy(show->own);

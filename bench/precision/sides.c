@@ -28,10 +28,8 @@ static struct bench_rays *in_floats(const rg_ray *rays, uint32_t count, const do
 }
 
 static void add_own(struct side *side, const struct world *world, uint32_t count, rg_grid_kind kind) {
-    static const char *const NAMES[] = {
-        [RG_GRID_LOOSE] = "loose", [RG_GRID_UNIFORM] = "uniform", [RG_GRID_HIERARCHICAL] = "hierarchical"};
     const rg_grid_config grid = {.size = sizeof grid, .kind = kind};
-    *side = (struct side){.name = NAMES[kind], .own = own_create(world->bodies, 1), .seconds = INFINITY};
+    *side = (struct side){.name = own_kind_name(kind), .own = own_create(world->bodies, 1), .seconds = INFINITY};
     side->t = bench_allocate(count, sizeof *side->t);
     side->answers = bench_answers_create(count);
     own_check(rg_grid_configure(side->own->scene, RG_GRID_OF_SCENE, &grid));
