@@ -13,16 +13,16 @@
 static const double PI = 3.14159265358979323846;
 
 enum {
-    CHILDREN = 9,    /* of a sphere of the flake */
-    AROUND = 6,      /* of them, around its equator; the others on the side away from its parent */
-    MESHES = 3,      /* icospheres of 20, 80 and 320 triangles */
-    SIZES = 100,     /* from the smallest mesh to the largest */
-    SWINGS = 4       /* of a body, to and fro, from time 0 to 1 */
+    CHILDREN = 9, /* of a sphere of the flake */
+    AROUND = 6,   /* of them, around its equator; the others on the side away from its parent */
+    MESHES = 3,   /* icospheres of 20, 80 and 320 triangles */
+    SIZES = 100,  /* from the smallest mesh to the largest */
+    SWINGS = 4    /* of a body, to and fro, from time 0 to 1 */
 };
 
 static const double FILLED = 0.05; /* part of the cube that the crowd fills, as in scenes.c */
-static const double FLIGHT = 5;    /* what the flake grows by on average; its spheres by half of it to one and a half */
-static const double WALK = 3;      /* cubes that a mesh goes at most */
+static const double FLIGHT = 5; /* what the flake grows by on average; its spheres by half of it to one and a half */
+static const double WALK = 3;   /* cubes that a mesh goes at most */
 
 static double rounded(double x) {
     return (double)(float)x;

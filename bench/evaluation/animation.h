@@ -2,10 +2,10 @@
 /*
  * animation.h: the evaluation's scenes, and the paths laid down for their bodies.
  *
- * At time 0 all are in the unit cube. "flake": a sphere flake whose spheres fly apart, each away from the middle, some
- * faster than others. "crowd": small turned meshes, their sizes 1:100, each along a line of its own and swinging about
- * it. "equal": spheres of one size, evenly spread, that swing about where they are. "engine": the parts of the demo's
- * glTF model, taken apart; only where the demo is built.
+ * At time 0 all are in the unit cube. "flake": a sphere flake whose spheres fly apart, each away from the middle,
+ * some faster than others. "crowd": small turned meshes, their sizes 1:100, each along a line of its own and swinging
+ * about it. "equal": spheres of one size, evenly spread, that swing about where they are. "engine": the parts of the
+ * demo's glTF model, taken apart; only where the demo is built.
  */
 #ifndef RAYGRID_BENCH_EVALUATION_ANIMATION_H
 #define RAYGRID_BENCH_EVALUATION_ANIMATION_H

@@ -3,9 +3,10 @@
  * entrant.h: one who takes part: raygrid with some grid, or the peer.
  *
  * The library leaves out what tiles are for as long as nothing has left a grid's box; there is no switch. So the
- * uniform grid takes part three times: as it is, without tiles; with one tiny object behind the camera just outside of
- * the box, so that every ray goes from tile to tile, but nearly all is in one; and with a box of half the scene's side
- * and cells as wide as the others', so that the scene lies in eight tiles: the grid at factor 2, before its rebuild.
+ * uniform grid takes part three times: as it is, without tiles; with one tiny object behind the camera just outside
+ * of the box, so that every ray goes from tile to tile, but nearly all is in one; and with a box of half the scene's
+ * side and cells as wide as the others', so that the scene lies in eight tiles: the grid at factor 2, before its
+ * rebuild.
  */
 #ifndef RAYGRID_BENCH_EVALUATION_ENTRANT_H
 #define RAYGRID_BENCH_EVALUATION_ENTRANT_H
@@ -44,7 +45,8 @@ void entrant_destroy(struct entrant *entrant);
 /** Traces a picture's primary rays (which 0) or shadow rays (1) once. The least processor time is kept. */
 void entrant_trace(struct entrant *entrant, const struct bench_rays *rays, int which);
 
-/** Moves all bodies to where the animation has them, one call each; the peer commits once for all, and once for one. */
+/** Moves all bodies to where the animation has them, one call each; the peer commits once for all, and once for one.
+ */
 void entrant_move(struct entrant *entrant);
 
 json_t *entrant_judge(struct entrant *entrant, struct exact_sample *sample, int which);

@@ -61,11 +61,11 @@ static void run(struct evaluation *evaluation, uint32_t threads, json_t *records
             1 / median);
     json_t *primary = judge(evaluation, &goal, goal.primary, &goal.answers);
     json_t *shadow = judge(evaluation, &goal, goal.shadows, &goal.occlusion);
-    json_array_append_new(
-        records, json_pack("{s:s, s:I, s:I, s:i, s:f, s:f, s:f, s:o, s:o}", "scene", "equal", "objects",
-                           (json_int_t)goal.bodies->count, "threads", (json_int_t)threads, "frames", FRAMES,
-                           "median ms", 1e3 * median, "best ms", 1e3 * seconds[0], "frames a second", 1 / median,
-                           "primary", primary, "shadow", shadow));
+    json_array_append_new(records,
+                          json_pack("{s:s, s:I, s:I, s:i, s:f, s:f, s:f, s:o, s:o}", "scene", "equal", "objects",
+                                    (json_int_t)goal.bodies->count, "threads", (json_int_t)threads, "frames", FRAMES,
+                                    "median ms", 1e3 * median, "best ms", 1e3 * seconds[0], "frames a second",
+                                    1 / median, "primary", primary, "shadow", shadow));
     own_destroy(goal.own);
     bench_rays_destroy(goal.primary);
     bench_rays_destroy(goal.shadows);

@@ -12,15 +12,51 @@
 #include <unistd.h>
 
 static const struct evaluation_effort EFFORTS[] = {
-    {.name = "full", .side = 512, .turns = 3, .checks = 2e8, .finest = 256, .flake = 7381, .crowd = 5000,
-     .equal = 10000, .most = 1000000, .most_meshes = 100000, .frames = 64, .runs = 3, .shown_flake = 30000,
-     .shown_crowd = 10000, .goal = 100000},
-    {.name = "quick", .side = 256, .turns = 1, .checks = 1e7, .finest = 128, .flake = 7381, .crowd = 5000,
-     .equal = 10000, .most = 100000, .most_meshes = 10000, .frames = 32, .runs = 1, .shown_flake = 10000,
-     .shown_crowd = 5000, .goal = 100000},
-    {.name = "selftest", .side = 32, .turns = 1, .checks = 1e6, .finest = 16, .flake = 820, .crowd = 500,
-     .equal = 1000, .most = 1000, .most_meshes = 1000, .frames = 12, .runs = 1, .shown_flake = 820,
-     .shown_crowd = 500, .goal = 1000},
+    {.name = "full",
+     .side = 512,
+     .turns = 3,
+     .checks = 2e8,
+     .finest = 256,
+     .flake = 7381,
+     .crowd = 5000,
+     .equal = 10000,
+     .most = 1000000,
+     .most_meshes = 100000,
+     .frames = 64,
+     .runs = 3,
+     .shown_flake = 30000,
+     .shown_crowd = 10000,
+     .goal = 100000},
+    {.name = "quick",
+     .side = 256,
+     .turns = 1,
+     .checks = 1e7,
+     .finest = 128,
+     .flake = 7381,
+     .crowd = 5000,
+     .equal = 10000,
+     .most = 100000,
+     .most_meshes = 10000,
+     .frames = 32,
+     .runs = 1,
+     .shown_flake = 10000,
+     .shown_crowd = 5000,
+     .goal = 100000},
+    {.name = "selftest",
+     .side = 32,
+     .turns = 1,
+     .checks = 1e6,
+     .finest = 16,
+     .flake = 820,
+     .crowd = 500,
+     .equal = 1000,
+     .most = 1000,
+     .most_meshes = 1000,
+     .frames = 12,
+     .runs = 1,
+     .shown_flake = 820,
+     .shown_crowd = 500,
+     .goal = 1000},
 };
 
 static const struct {
@@ -92,11 +128,10 @@ static json_t *describe_run(const struct evaluation *evaluation) {
     char date[32];
     time_t now = time(NULL);
     strftime(date, sizeof date, "%Y-%m-%d", gmtime(&now));
-    return json_pack("{s:s, s:s, s:s, s:s?, s:s, s:s, s:o, s:I, s:i, s:i, s:o}", "date", date, "effort",
-                     effort->name, "raygrid", v.own, "peer", v.peer[0] ? v.peer : NULL, "compiler", v.compiler,
-                     "instructions", v.isa, "processor", processor(), "processors",
-                     (json_int_t)sysconf(_SC_NPROCESSORS_ONLN), "side", effort->side, "turns", effort->turns,
-                     "load before", load());
+    return json_pack("{s:s, s:s, s:s, s:s?, s:s, s:s, s:o, s:I, s:i, s:i, s:o}", "date", date, "effort", effort->name,
+                     "raygrid", v.own, "peer", v.peer[0] ? v.peer : NULL, "compiler", v.compiler, "instructions",
+                     v.isa, "processor", processor(), "processors", (json_int_t)sysconf(_SC_NPROCESSORS_ONLN), "side",
+                     effort->side, "turns", effort->turns, "load before", load());
 }
 
 /* -------------------------------------------------------------------------------------------- the command */

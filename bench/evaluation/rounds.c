@@ -80,8 +80,8 @@ static void report(struct round *r, int which, json_t *records) {
     json_object_set_new(record, "update ns", json_real(1e9 * e->update));
     json_object_set_new(record, "single update ns", json_real(1e9 * e->single));
     json_object_set_new(record, "tiles", json_integer((json_int_t)grid->tiles));
-    json_object_set_new(record, "entries an object", evaluation_number(e->own ? (double)grid->entries / bodies->count
-                                                                              : NAN));
+    json_object_set_new(record, "entries an object",
+                        evaluation_number(e->own ? (double)grid->entries / bodies->count : NAN));
     json_object_set_new(record, "bytes an object",
                         json_real(e->own ? own_bytes_per_object(e->own) : peer_bytes_per_object(e->peer)));
     json_object_set_new(record, "primary", r->judged[which][0]);

@@ -173,28 +173,27 @@ static void report(const struct show *show, json_t *records) {
         json_array_append_new(tiles, json_integer((json_int_t)frame->tiles));
     }
     const struct bench_scene *bodies = show->animation->bodies;
-    json_array_append_new(
-        records, json_pack("{s:s, s:I, s:s, s:s, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "scene", bodies->name,
-                           "objects", (json_int_t)bodies->count, "kind", own_kind_name(show->kind), "manner",
-                           MANNER_NAMES[show->manner], "threads", WORKERS, "runs", show->runs, "ms", ms, "update ms",
-                           updates, "rebuilding", rebuilding, "rebuilt", rebuilt, "tiles", tiles, "judged",
-                           show->judged));
+    json_array_append_new(records,
+                          json_pack("{s:s, s:I, s:s, s:s, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+                                    bodies->name, "objects", (json_int_t)bodies->count, "kind",
+                                    own_kind_name(show->kind), "manner", MANNER_NAMES[show->manner], "threads",
+                                    WORKERS, "runs", show->runs, "ms", ms, "update ms", updates, "rebuilding",
+                                    rebuilding, "rebuilt", rebuilt, "tiles", tiles, "judged", show->judged));
 }
 
 void evaluate_shows(struct evaluation *evaluation) {
     static const struct {
         rg_grid_kind kind;
         enum manner manner;
-    } ALL[] = {{RG_GRID_UNIFORM, REBUILD_IN_FRAME}, {RG_GRID_UNIFORM, REBUILD_NEVER},
-               {RG_GRID_UNIFORM, REBUILD_BESIDE},   {RG_GRID_HIERARCHICAL, REBUILD_IN_FRAME},
+    } ALL[] = {{RG_GRID_UNIFORM, REBUILD_IN_FRAME},   {RG_GRID_UNIFORM, REBUILD_NEVER},
+               {RG_GRID_UNIFORM, REBUILD_BESIDE},     {RG_GRID_HIERARCHICAL, REBUILD_IN_FRAME},
                {RG_GRID_HIERARCHICAL, REBUILD_NEVER}, {RG_GRID_HIERARCHICAL, REBUILD_BESIDE},
                {RG_GRID_LOOSE, REBUILD_BESIDE}};
     enum { SHOWS = sizeof ALL / sizeof *ALL };
     json_t *records = evaluation_array(evaluation, "shows");
     for (int s = 0; s < 2; s++) {
-        struct animation *animation =
-            s ? animation_create("crowd", evaluation->effort.shown_crowd)
-              : animation_create("flake", evaluation->effort.shown_flake);
+        struct animation *animation = s ? animation_create("crowd", evaluation->effort.shown_crowd)
+                                        : animation_create("flake", evaluation->effort.shown_flake);
         struct show *shows[SHOWS];
         for (int i = 0; i < SHOWS; i++) {
             shows[i] = show_create(evaluation, animation, ALL[i].kind, ALL[i].manner);

@@ -12,9 +12,9 @@
 
 enum {
     RESOLUTION = 64,
-    SMALLEST = 512, /* the smallest visitor's diameter: a 512th of the scene */
-    MOST = 256,     /* visitors at once */
-    CALLS = 4096,   /* at least, of each kind in a turn, where they are small */
+    SMALLEST = 512,      /* the smallest visitor's diameter: a 512th of the scene */
+    MOST = 256,          /* visitors at once */
+    CALLS = 4096,        /* at least, of each kind in a turn, where they are small */
     MOST_CELLS = 1 << 20 /* that a uniform grid lists all visitors in */
 };
 
@@ -91,11 +91,10 @@ void evaluate_sizes(struct evaluation *evaluation) {
             come_and_go(own, residents, evaluation->effort.turns, &insert, &removal);
             fprintf(stderr, "size 1/%d, %s: insert %.0f ns, remove %.0f ns\n", parts, own_kind_name(KINDS[k]),
                     1e9 * insert, 1e9 * removal);
-            json_array_append_new(
-                records, json_pack("{s:s, s:i, s:s, s:I, s:f, s:f, s:f, s:o}", "scene", "equal", "objects",
-                                   (int)residents, "kind", own_kind_name(KINDS[k]), "resolution",
-                                   (json_int_t)RESOLUTION, "size", size, "insert ns", 1e9 * insert, "remove ns",
-                                   1e9 * removal, "judged", verdict));
+            json_array_append_new(records, json_pack("{s:s, s:i, s:s, s:I, s:f, s:f, s:f, s:o}", "scene", "equal",
+                                                     "objects", (int)residents, "kind", own_kind_name(KINDS[k]),
+                                                     "resolution", (json_int_t)RESOLUTION, "size", size, "insert ns",
+                                                     1e9 * insert, "remove ns", 1e9 * removal, "judged", verdict));
             own_destroy(own);
         }
         bench_scene_destroy(bodies);
