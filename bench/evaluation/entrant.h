@@ -3,8 +3,8 @@
  * entrant.h: one who takes part: raygrid with some grid, or the peer.
  *
  * The library leaves out what tiles are for as long as nothing has left a grid's box; there is no switch. So the
- * uniform grid takes part three times: as it is, without tiles; with one tiny object behind the camera just outside
- * of the box, so that every ray goes from tile to tile, but nearly all is in one; and with a box of half the scene's
+ * uniform grid takes part three times: as it is, without tiles; with one tiny object just outside of the box, where
+ * no ray comes, so that every ray goes from tile to tile, but nearly all is in one; and with a box of half the scene's
  * side and cells as wide as the others', so that the scene lies in eight tiles: the grid at factor 2, before its
  * rebuild.
  */

@@ -47,8 +47,10 @@ def resolutions(records, key, form):
         of_scene = [r for r in records if r['scene'] == scene]
         for side in sorted(each(of_scene, 'side'), key=list(each(records, 'side')).index):
             at = {r['resolution']: r for r in of_scene if r['side'] == side}
-            cells = [form(at[None][key])] + [''] * (len(columns) - 1) if None in at else \
-                [form(at[c][key]) for c in columns]
+            if None in at:
+                cells = [form(at[None][key])] + [''] * (len(columns) - 1)
+            else:
+                cells = [form(at[c][key]) for c in columns]
             rows.append([scene, side, *cells, errors(at.values())])
     return table(['scene', 'side', *columns, 'wrong / checked'], rows)
 
@@ -136,7 +138,7 @@ def markdown(report):
         resolutions(report['resolutions'], 'frames a second', short),
         '**(b) Updates a second**, all objects moving, by the resolution of the grid; one thread:',
         resolutions(report['resolutions'], 'updates a second', short),
-        '**(c) The shows**, two threads, by the clock on the wall:',
+        '**(c) The shows**, two threads, by the wall clock:',
         shows(report['shows']),
         '**(d) Insert and remove by size**, one call each:',
         sizes(report['sizes']),
@@ -144,7 +146,7 @@ def markdown(report):
         equal_sizes(report['resolutions']),
         '**(e) More and more objects**, the grids left to choose their resolution; one thread:',
         counts(report['counts']),
-        '**Thirty frames a second**, a tenth of all spheres moving, primary and shadow rays, by the clock on the wall:',
+        '**Thirty frames a second**, a tenth of all spheres moving, primary and shadow rays, by the wall clock:',
         goal(report['goal']),
     ]
     return '\n\n'.join(parts)
