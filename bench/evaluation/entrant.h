@@ -4,9 +4,9 @@
  *
  * The library leaves out what tiles are for as long as nothing has left a grid's box; there is no switch. So the
  * uniform grid takes part three times: as it is, without tiles; with one tiny object just outside of the box, where
- * no ray comes, so that every ray goes from tile to tile, but nearly all is in one; and with a box of half the scene's
- * side and cells as wide as the others', so that the scene lies in eight tiles: the grid at factor 2, before its
- * rebuild.
+ * no ray comes, so that every ray goes from tile to tile, but nearly all is in one; and with a box of half the
+ * scene's side and cells as wide as the others', so that the scene lies in eight tiles: the grid at factor 2, before
+ * its rebuild.
  */
 #ifndef RAYGRID_BENCH_EVALUATION_ENTRANT_H
 #define RAYGRID_BENCH_EVALUATION_ENTRANT_H

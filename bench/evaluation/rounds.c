@@ -24,9 +24,16 @@ struct round {
     rg_grid_report grids[ENTRANT_KINDS]; /* before anything moves */
 };
 
+/* What takes this long is not much disturbed, and once is enough. */
+static const double LONG = 0.5;
+
 static void take_turns(struct round *r, int which) {
     for (int turn = 0; turn < r->evaluation->effort.turns; turn++) {
-        for (int e = 0; e < r->count; e++) entrant_trace(r->entrants[e], r->rays[which], which);
+        for (int e = 0; e < r->count; e++) {
+            if (turn == 0 || r->entrants[e]->seconds[which] < LONG) {
+                entrant_trace(r->entrants[e], r->rays[which], which);
+            }
+        }
     }
 }
 

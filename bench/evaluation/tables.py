@@ -45,7 +45,7 @@ def resolutions(records, key, form):
     rows = []
     for scene in each(records, 'scene'):
         of_scene = [r for r in records if r['scene'] == scene]
-        for side in sorted(each(of_scene, 'side'), key=list(each(records, 'side')).index):
+        for side in each(of_scene, 'side'):
             at = {r['resolution']: r for r in of_scene if r['side'] == side}
             if None in at:
                 cells = [form(at[None][key])] + [''] * (len(columns) - 1)
@@ -56,7 +56,7 @@ def resolutions(records, key, form):
 
 
 def equal_sizes(records):
-    """Of the scene of equal sizes the resolution at which each of the paper's kinds is best, and what it does there."""
+    """Of the scene of equal sizes: where each of the paper's kinds is best, and what it does there."""
     rows = []
     for side in ('uniform', 'hierarchical'):
         best = max((r for r in records if r['scene'] == 'equal' and r['side'] == side),
@@ -134,7 +134,7 @@ def goal(records):
 def markdown(report):
     parts = [
         about(report['run']),
-        '**(a) Frames a second**, primary and shadow rays, by the resolution of the grid; one thread, processor time:',
+        '**(a) Frames a second**, primary and shadow rays, by the resolution of the grid; one thread:',
         resolutions(report['resolutions'], 'frames a second', short),
         '**(b) Updates a second**, all objects moving, by the resolution of the grid; one thread:',
         resolutions(report['resolutions'], 'updates a second', short),

@@ -67,7 +67,7 @@ class Figures(unittest.TestCase):
     def test_tiles_are_where_they_should_be(self):
         expected = {'uniform': 1, 'hierarchical': 1, 'uniform, tiles': 2, 'uniform, eight tiles': 8}
         for record in self.report['resolutions']:
-            if record['side'] in expected:
+            if record['side'] in expected and record['scene'] != 'engine':  # whose parts fill no octants
                 self.assertEqual(record['tiles'], expected[record['side']], record)
 
     def test_shows_are_rebuilt_as_they_should_be(self):
