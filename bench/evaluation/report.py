@@ -52,25 +52,24 @@ def draw_resolutions(records, folder):
 
 
 def draw_shows(records, folder):
-    """Milliseconds of each frame; frames in which a rebuild was made or under way are marked below."""
+    """The rate at which each frame came; dots where a rebuild was made or under way."""
     panels = [(scene, kind) for scene in tables.each(records, 'scene') for kind in ('uniform', 'hierarchical')]
     figure, grid = plt.subplots(len(panels) // 2, 2, figsize=(12, 3.6 * (len(panels) // 2) + 0.8),
                                 layout='constrained', squeeze=False)
     for axes, (scene, kind) in zip(grid.flat, panels):
-        top = 0
         for r in records:
             if r['scene'] != scene or r['kind'] not in (kind, 'loose'):
                 continue
             loose = r['kind'] == 'loose'
             colour = LOOKS['loose'][1] if loose else MANNERS[r['manner']]
-            axes.plot(r['ms'], color=colour, linestyle='--' if loose else '-', linewidth=1.3,
+            rate = [1000 / ms for ms in r['ms']]
+            axes.plot(rate, color=colour, linestyle='--' if loose else '-', linewidth=1.3,
                       label='loose grid' if loose else r['manner'])
-            busy = [i for i in range(len(r['ms'])) if tables.busy(r, i)]
-            axes.plot(busy, [r['ms'][i] for i in busy], color=colour, marker='o', linestyle='', markersize=4)
-            top = max(top, *r['ms'])
+            busy = [i for i in range(len(rate)) if tables.busy(r, i)]
+            axes.plot(busy, [rate[i] for i in busy], color=colour, marker='o', linestyle='', markersize=4)
         objects = next(r['objects'] for r in records if r['scene'] == scene)
-        axes.set(title=f'{scene}, {objects} objects, {kind} grid', ylim=(0, 1.05 * top), ylabel='ms a frame')
-        axes.grid(alpha=0.25)
+        axes.set(title=f'{scene}, {objects} objects, {kind} grid', yscale='log', ylabel='frames a second')
+        axes.grid(alpha=0.25, which='both')
     for axes in grid[-1]:
         axes.set_xlabel('frame: the scene grows to several times its first box')
     handles, labels = grid[0, 0].get_legend_handles_labels()
