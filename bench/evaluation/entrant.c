@@ -81,7 +81,7 @@ void entrant_destroy(struct entrant *entrant) {
     free(entrant);
 }
 
-void entrant_trace(struct entrant *e, const struct bench_rays *rays, int which) {
+double entrant_trace(struct entrant *e, const struct bench_rays *rays, int which) {
     if (e->peer && isinf(e->seconds[which])) {
         e->ways[which] = peer_best_way(e->peer, rays, false, &e->answers[which], NULL);
     }
@@ -91,7 +91,7 @@ void entrant_trace(struct entrant *e, const struct bench_rays *rays, int which) 
     } else {
         peer_trace(e->peer, rays, e->ways[which], &e->answers[which]);
     }
-    e->seconds[which] = fmin(e->seconds[which], bench_thread_seconds() - before);
+    return bench_thread_seconds() - before;
 }
 
 static void move_own(struct entrant *e) {

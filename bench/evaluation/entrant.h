@@ -33,7 +33,7 @@ struct entrant {
     struct peer *peer;
     struct peer_way ways[2];         /* of primary and shadow rays */
     struct bench_answers answers[2]; /* to them */
-    double seconds[2];               /* the least that they took */
+    double seconds[2];               /* the least that they took, kept by the caller; +inf at first */
     double update, single;           /* seconds an object: where all move, the least; where only one does */
 };
 
@@ -42,8 +42,8 @@ struct entrant *entrant_create(struct evaluation *evaluation, enum entrant_kind 
                                uint32_t resolution, uint32_t rays);
 void entrant_destroy(struct entrant *entrant);
 
-/** Traces a picture's primary rays (which 0) or shadow rays (1) once. The least processor time is kept. */
-void entrant_trace(struct entrant *entrant, const struct bench_rays *rays, int which);
+/** Traces a picture's primary rays (which 0) or shadow rays (1) once: returns the seconds of processor time. */
+double entrant_trace(struct entrant *entrant, const struct bench_rays *rays, int which);
 
 /** Moves all bodies to where the animation has them, one call each; the peer commits once for all, and once for one.
  */

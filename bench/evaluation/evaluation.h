@@ -57,6 +57,10 @@ json_t *evaluation_judge_own(struct evaluation *evaluation, struct exact_sample 
 json_t *evaluation_judge_peer(struct exact_sample *sample, const struct peer *peer,
                               const struct bench_answers *answers);
 
+/** The same of a sample made for it, of the bodies where they are now, with that share of the usual effort. */
+json_t *evaluation_check_own(struct evaluation *evaluation, const struct own *own, const struct bench_rays *rays,
+                             const struct bench_answers *answers, double share);
+
 /** The array of that name in the report. */
 json_t *evaluation_array(struct evaluation *evaluation, const char *name);
 

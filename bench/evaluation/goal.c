@@ -36,16 +36,6 @@ static double frame(struct goal *goal, uint32_t number) {
     return bench_wall_seconds() - before;
 }
 
-static json_t *judge(struct evaluation *evaluation, struct goal *goal, const struct bench_rays *rays,
-                     const struct bench_answers *answers) {
-    struct exact *exact = exact_create(goal->bodies, NULL);
-    struct exact_sample *sample = exact_sample_create(exact, rays, evaluation->effort.checks / 2);
-    json_t *verdict = evaluation_judge_own(evaluation, sample, goal->own, answers);
-    exact_sample_destroy(sample);
-    exact_destroy(exact);
-    return verdict;
-}
-
 static void run(struct evaluation *evaluation, uint32_t threads, json_t *records) {
     double seconds[FRAMES];
     struct goal goal = {.bodies = bench_scene_create("uniform", evaluation->effort.goal)};
@@ -59,8 +49,8 @@ static void run(struct evaluation *evaluation, uint32_t threads, json_t *records
     double median = bench_median(seconds, FRAMES);
     fprintf(stderr, "%u spheres, a tenth moved, %u threads: %.1f frames/s\n", goal.bodies->count, threads,
             1 / median);
-    json_t *primary = judge(evaluation, &goal, goal.primary, &goal.answers);
-    json_t *shadow = judge(evaluation, &goal, goal.shadows, &goal.occlusion);
+    json_t *primary = evaluation_check_own(evaluation, goal.own, goal.primary, &goal.answers, 1);
+    json_t *shadow = evaluation_check_own(evaluation, goal.own, goal.shadows, &goal.occlusion, 1);
     json_array_append_new(records,
                           json_pack("{s:s, s:I, s:I, s:i, s:f, s:f, s:f, s:o, s:o}", "scene", "equal", "objects",
                                     (json_int_t)goal.bodies->count, "threads", (json_int_t)threads, "frames", FRAMES,

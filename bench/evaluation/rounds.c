@@ -29,10 +29,10 @@ static const double LONG = 0.5;
 
 static void take_turns(struct round *r, int which) {
     for (int turn = 0; turn < r->evaluation->effort.turns; turn++) {
-        for (int e = 0; e < r->count; e++) {
-            if (turn == 0 || r->entrants[e]->seconds[which] < LONG) {
-                entrant_trace(r->entrants[e], r->rays[which], which);
-            }
+        for (int i = 0; i < r->count; i++) {
+            struct entrant *e = r->entrants[i];
+            if (turn > 0 && e->seconds[which] > LONG) continue;
+            e->seconds[which] = fmin(e->seconds[which], entrant_trace(e, r->rays[which], which));
         }
     }
 }
@@ -63,11 +63,7 @@ static void move(struct round *r) {
         animation_go(r->animation, turn * STEP);
         for (int e = 0; e < r->count; e++) entrant_move(r->entrants[e]);
     }
-    for (int e = 0; e < r->count; e++) {
-        double seconds = r->entrants[e]->seconds[0];
-        entrant_trace(r->entrants[e], r->rays[0], 0);
-        r->entrants[e]->seconds[0] = seconds; /* of the scene that stands still */
-    }
+    for (int e = 0; e < r->count; e++) (void)entrant_trace(r->entrants[e], r->rays[0], 0);
     judge(r, 0, 2);
 }
 

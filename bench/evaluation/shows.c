@@ -112,15 +112,10 @@ static void judge(struct show *show, const struct own *own) {
         double time = time_of(show, judged_frame(show, i));
         animation_go(show->animation, time);
         animation_look(show->animation, time, show->cube, show->rays);
-        struct exact *exact = exact_create(show->animation->bodies, NULL);
-        struct exact_sample *sample =
-            exact_sample_create(exact, show->rays, show->evaluation->effort.checks / JUDGED);
-        json_t *verdict = evaluation_judge_own(show->evaluation, sample, own, &show->aside[i]);
+        json_t *verdict = evaluation_check_own(show->evaluation, own, show->rays, &show->aside[i], 1.0 / JUDGED);
         checked += json_integer_value(json_object_get(verdict, "checked"));
         wrong += json_integer_value(json_object_get(verdict, "wrong"));
         json_decref(verdict);
-        exact_sample_destroy(sample);
-        exact_destroy(exact);
     }
     show->judged = json_pack("{s:I, s:I}", "checked", checked, "wrong", wrong);
 }

@@ -42,12 +42,8 @@ static struct own *create_own(const struct bench_scene *bodies, rg_grid_kind kin
 static json_t *judge(struct evaluation *evaluation, struct own *own) {
     struct bench_rays *rays = bench_primary_rays(own->bodies, evaluation->effort.side, false);
     struct bench_answers answers = bench_answers_create(rays->count);
-    struct exact *exact = exact_create(own->bodies, NULL);
-    struct exact_sample *sample = exact_sample_create(exact, rays, evaluation->effort.checks / 4);
     own_trace(own, rays, UINT32_MAX, &answers);
-    json_t *verdict = evaluation_judge_own(evaluation, sample, own, &answers);
-    exact_sample_destroy(sample);
-    exact_destroy(exact);
+    json_t *verdict = evaluation_check_own(evaluation, own, rays, &answers, 0.25);
     bench_answers_destroy(&answers);
     bench_rays_destroy(rays);
     return verdict;
