@@ -3,6 +3,7 @@
 
 #include "measure.h"
 #include "mesh.h"
+#include "vectors.h"
 
 #include <float.h>
 #include <math.h>
@@ -16,10 +17,6 @@ enum { CLUSTERS = 64, BIG_ONES = 10, MESH_LEVELS = 4, FORMS = 16 };
 
 const char *const BENCH_SCENES[] = {"uniform", "mixed",  "stadium", "boxes", "capsules",
                                     "mixture", "meshes", "noisy",   "soup",  NULL};
-
-static double rounded(double x) {
-    return (double)(float)x;
-}
 
 static double clamp(double x) {
     return x < 0 ? 0 : x > 1 ? 1 : x;

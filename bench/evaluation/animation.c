@@ -5,8 +5,8 @@
 #include "gltf.h"
 #endif
 #include "mesh.h"
+#include "vectors.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,20 +24,7 @@ static const double FILLED = 0.05; /* part of the cube that the crowd fills, as 
 static const double FLIGHT = 5; /* what the flake grows by on average; its spheres by half of it to one and a half */
 static const double WALK = 3;   /* cubes that a mesh goes at most */
 
-static double rounded(double x) {
-    return (double)(float)x;
-}
-
 /* -------------------------------------------------------------------------------------------- the flake */
-
-static void unit(double v[3]) {
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; k++) v[k] /= length;
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
 
 /* Two directions square to the axis and to each other. */
 static void around(const double axis[3], double u[3], double v[3]) {
@@ -46,7 +33,7 @@ static void around(const double axis[3], double u[3], double v[3]) {
     if (fabs(axis[2]) < fabs(axis[k])) k = 2;
     least[k] = 1;
     cross(axis, least, u);
-    unit(u);
+    normalise(u);
     cross(axis, u, v);
 }
 

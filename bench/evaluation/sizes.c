@@ -4,8 +4,8 @@
  * a cell to half of the scene. While they are there, a picture is held against brute force.
  */
 #include "evaluation.h"
+#include "vectors.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,10 +22,9 @@ enum {
 static struct bench_scene *create_bodies(uint32_t residents, uint32_t visitors, double radius) {
     struct bench_scene *bodies = bench_scene_create("uniform", residents + visitors);
     for (uint32_t i = residents; i < bodies->count; i++) {
-        bodies->scales[i] = (double)(float)radius;
+        bodies->scales[i] = rounded(radius);
         for (int k = 0; k < 3; k++) {
-            double place = radius + (1 - 2 * radius) * bench_random(&bodies->random);
-            bodies->positions[i][k] = (double)(float)place;
+            bodies->positions[i][k] = rounded(radius + (1 - 2 * radius) * bench_random(&bodies->random));
         }
     }
     return bodies;

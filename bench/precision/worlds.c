@@ -3,6 +3,7 @@
 
 #include "measure.h"
 #include "mesh.h"
+#include "vectors.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,21 +18,6 @@ static const double HUGE_RADIUS = 1e6;
 
 static double between(uint64_t *random, double lo, double hi) {
     return lo + (hi - lo) * bench_random(random);
-}
-
-static double rounded(double x) {
-    return (double)(float)x;
-}
-
-static void normalise(double v[3]) {
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; k++) v[k] /= length;
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* ------------------------------------------------------------------------------------------------- shapes */
