@@ -8,49 +8,39 @@ const char *const ENTRANT_NAMES[ENTRANT_KINDS] = {
     "uniform", "uniform, tiles", "uniform, eight tiles", "hierarchical", "loose", "peer",
 };
 
-/* The box of all bodies, with as much around it as the library takes: they touch its walls, but do not leave it. */
-static void bounds(const struct bench_scene *bodies, double lo[3], double hi[3]) {
-    double longest = 0;
-    for (int k = 0; k < 3; k++) {
-        lo[k] = INFINITY;
-        hi[k] = -INFINITY;
-        for (uint32_t i = 0; i < bodies->count; i++) {
-            lo[k] = fmin(lo[k], bodies->positions[i][k] - bench_reach(bodies, i));
-            hi[k] = fmax(hi[k], bodies->positions[i][k] + bench_reach(bodies, i));
-        }
-        longest = fmax(longest, hi[k] - lo[k]);
-    }
-    for (int k = 0; k < 3; k++) {
-        lo[k] -= 0x1p-10 * longest;
-        hi[k] += 0x1p-10 * longest;
-    }
-}
-
 /* Below, left of and before all bodies: no ray of the camera or to the light comes there. */
-static void insert_outside(struct own *own, const double lo[3], double side) {
+static void insert_outside(struct own *own) {
+    rg_grid_report report = own_grid_report(own);
+    double side = 0, at[3];
     rg_shape *shape;
-    rg_pose pose = rg_pose_at(lo[0] - 0.02 * side, lo[1] - 0.02 * side, lo[2] - 0.02 * side);
+    for (int k = 0; k < 3; k++) side = fmax(side, report.physical_hi[k] - report.physical_lo[k]);
+    for (int k = 0; k < 3; k++) at[k] = report.physical_lo[k] - 0.02 * side;
+    rg_pose pose = rg_pose_at(at[0], at[1], at[2]);
     own_check(rg_shape_create_sphere(NULL, 0.005 * side, &shape));
     own_check(rg_scene_insert(own->scene, shape, &pose, NULL));
     rg_shape_release(&shape);
 }
 
+/* The box is halved, and with it the number of cells along it. */
+static void halve_box(struct own *own, rg_grid_config grid) {
+    rg_grid_report report = own_grid_report(own);
+    grid.resolution /= 2;
+    for (int k = 0; k < 3; k++) {
+        grid.lo[k] = report.physical_lo[k];
+        grid.hi[k] = 0.5 * (report.physical_lo[k] + report.physical_hi[k]);
+    }
+    own_check(rg_grid_configure(own->scene, RG_GRID_OF_SCENE, &grid));
+}
+
 static struct own *create_own(enum entrant_kind kind, const struct bench_scene *bodies, uint32_t resolution) {
     static const rg_grid_kind KINDS[] = {RG_GRID_UNIFORM, RG_GRID_UNIFORM, RG_GRID_UNIFORM, RG_GRID_HIERARCHICAL,
                                          RG_GRID_LOOSE};
-    rg_grid_config grid = {.size = sizeof grid,
-                           .kind = KINDS[kind],
-                           .resolution = kind == ENTRANT_EIGHT_TILES ? resolution / 2 : resolution,
-                           .rebuild_factor = RG_REBUILD_NEVER};
-    double lo[3], hi[3];
-    bounds(bodies, lo, hi);
-    for (int k = 0; (kind == ENTRANT_TILES || kind == ENTRANT_EIGHT_TILES) && k < 3; k++) {
-        grid.lo[k] = lo[k];
-        grid.hi[k] = kind == ENTRANT_TILES ? hi[k] : 0.5 * (lo[k] + hi[k]);
-    }
+    const rg_grid_config grid = {
+        .size = sizeof grid, .kind = KINDS[kind], .resolution = resolution, .rebuild_factor = RG_REBUILD_NEVER};
     struct own *own = own_create_empty(bodies, 1, &grid);
     own_fill(own);
-    if (kind == ENTRANT_TILES) insert_outside(own, lo, fmax(hi[0] - lo[0], fmax(hi[1] - lo[1], hi[2] - lo[2])));
+    if (kind == ENTRANT_TILES) insert_outside(own);
+    if (kind == ENTRANT_EIGHT_TILES) halve_box(own, grid);
     return own;
 }
 
