@@ -13,11 +13,12 @@
 static const double PI = 3.14159265358979323846;
 
 enum {
-    CHILDREN = 9, /* of a sphere of the flake */
-    AROUND = 6,   /* of them, around its equator; the others on the side away from its parent */
-    MESHES = 3,   /* icospheres of 20, 80 and 320 triangles */
-    SIZES = 100,  /* from the smallest mesh to the largest */
-    SWINGS = 4    /* of a body, to and fro, from time 0 to 1 */
+    CHILDREN = 9,  /* of a sphere of the flake */
+    AROUND = 6,    /* of them, around its equator; the others on the side away from its parent */
+    MESHES = 3,    /* icospheres of 20, 80 and 320 triangles */
+    SIZES = 100,   /* from the smallest mesh to the largest */
+    SWINGS = 4,    /* of a body, to and fro, from time 0 to 1 */
+    ESCAPING = 100 /* one in so many escapes */
 };
 
 static const double FILLED = 0.05; /* part of the cube that the crowd fills, as in scenes.c */
@@ -129,29 +130,24 @@ static void fly_apart(struct animation *a, double flight) {
 
 static void walk(struct animation *a) {
     struct bench_scene *bodies = a->bodies;
-    for (uint32_t i = 0; i < bodies->count; i++) {
+    for (uint32_t i = 0; i < a->moving; i++) {
         double direction[3], length = WALK * bench_random(&bodies->random);
         bench_random_direction(&bodies->random, direction);
-        bench_random_direction(&bodies->random, a->swings[i]);
-        for (int k = 0; k < 3; k++) {
-            a->ways[i][k] = length * direction[k];
-            a->swings[i][k] *= 0.05;
-        }
+        for (int k = 0; k < 3; k++) a->ways[i][k] = length * direction[k];
     }
-    a->growth = 2 * WALK;
 }
 
-static void swing(struct animation *a) {
-    for (uint32_t i = 0; i < a->bodies->count; i++) {
+static void swing(struct animation *a, double radii) {
+    for (uint32_t i = 0; i < a->moving; i++) {
         bench_random_direction(&a->bodies->random, a->swings[i]);
-        for (int k = 0; k < 3; k++) a->swings[i][k] *= 2 * bench_reach(a->bodies, i);
+        for (int k = 0; k < 3; k++) a->swings[i][k] *= radii * bench_reach(a->bodies, i);
     }
 }
 
 static struct bench_scene *create_bodies(const char *name, uint32_t count) {
     if (strcmp(name, "flake") == 0) return create_flake(count);
     if (strcmp(name, "crowd") == 0) return create_crowd(count);
-    if (strcmp(name, "equal") == 0) return bench_scene_create("uniform", count);
+    if (strcmp(name, "equal") == 0 || strcmp(name, "escape") == 0) return bench_scene_create("uniform", count);
 #if defined(BENCH_GLTF)
     if (strcmp(name, "engine") == 0) return bench_gltf_scene(bench_gltf_usual());
 #endif
@@ -166,10 +162,16 @@ struct animation *animation_create(const char *name, uint32_t count) {
     a->bodies = bodies;
     a->ways = bench_allocate(bodies->count, sizeof *a->ways);
     a->swings = bench_allocate(bodies->count, sizeof *a->swings);
+    a->moving = bodies->count;
     if (strcmp(name, "crowd") == 0) {
         walk(a);
+        swing(a, 2);
+        a->growth = 2 * WALK;
     } else if (strcmp(name, "equal") == 0) {
-        swing(a);
+        swing(a, 2);
+    } else if (strcmp(name, "escape") == 0) {
+        a->moving = bodies->count / ESCAPING;
+        walk(a);
     } else {
         fly_apart(a, FLIGHT);
     }
@@ -187,7 +189,7 @@ void animation_destroy(struct animation *animation) {
 void animation_go(struct animation *animation, double time) {
     struct bench_scene *bodies = animation->bodies;
     double aside = sin(2 * PI * SWINGS * time);
-    for (uint32_t i = 0; i < bodies->count; i++) {
+    for (uint32_t i = 0; i < animation->moving; i++) {
         for (int k = 0; k < 3; k++) {
             double moved = time * animation->ways[i][k] + aside * animation->swings[i][k];
             bodies->positions[i][k] = rounded(bodies->homes[i][k] + moved);

@@ -4,8 +4,9 @@
  *
  * At time 0 all are in the unit cube. "flake": a sphere flake whose spheres fly apart, each away from the middle,
  * some faster than others. "crowd": small turned meshes, their sizes 1:100, each along a line of its own and swinging
- * about it. "equal": spheres of one size, evenly spread, that swing about where they are. "engine": the parts of the
- * demo's glTF model, taken apart; only where the demo is built.
+ * about it. "equal": spheres of one size, evenly spread, that swing about where they are. "escape": the same spheres
+ * stand still, but for one in a hundred, which goes far away. "engine": the parts of the demo's glTF model, taken
+ * apart; only where the demo is built.
  */
 #ifndef RAYGRID_BENCH_EVALUATION_ANIMATION_H
 #define RAYGRID_BENCH_EVALUATION_ANIMATION_H
@@ -15,9 +16,10 @@
 
 struct animation {
     struct bench_scene *bodies; /* as they are now */
+    uint32_t moving;            /* the first so many; the others stand still */
     double (*ways)[3];          /* what each has moved along its line at time 1 */
     double (*swings)[3];        /* how far it swings to either side */
-    double growth;              /* at time 1 the scene is about so many cubes larger, on each axis */
+    double growth;              /* at time 1 the camera looks at a scene so many cubes larger on each axis */
 };
 
 /** As many bodies as asked for; the engine has its own number. NULL if there is no such scene here. */

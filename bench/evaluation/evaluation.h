@@ -17,15 +17,15 @@
 /** How much is done. */
 struct evaluation_effort {
     const char *name;
-    int side;                          /* of all pictures, in rays */
-    int turns;                         /* of each entrant, in turn; its least time counts */
-    double checks;                     /* about so many brute-force tests for each picture */
-    uint32_t finest;                   /* resolution tried: 8, 16, ... up to it */
-    uint32_t flake, crowd, equal;      /* bodies of the scenes in (a) and (b), and of equal in (d) */
-    uint32_t most, most_meshes;        /* (e): bodies of the largest scenes */
-    int frames, runs;                  /* (c): of an animation, and how often it is shown */
-    uint32_t shown_flake, shown_crowd; /* (c): bodies */
-    uint32_t goal;                     /* bodies of the frames that are to come 30 a second */
+    int side;                                        /* of all pictures, in rays */
+    int turns;                                       /* of each entrant, in turn; its least time counts */
+    double checks;                                   /* about so many brute-force tests for each picture */
+    uint32_t finest;                                 /* resolution tried: 8, 16, ... up to it */
+    uint32_t flake, crowd, equal;                    /* bodies of the scenes in (a) and (b), and of equal in (d) */
+    uint32_t most, most_meshes;                      /* (e): bodies of the largest scenes */
+    int frames, runs;                                /* (c): of an animation, and how often it is shown */
+    uint32_t shown_flake, shown_crowd, shown_escape; /* (c): bodies */
+    uint32_t goal;                                   /* bodies of the frames that are to come 30 a second */
 };
 
 struct evaluation {

@@ -53,13 +53,12 @@ def draw_resolutions(records, folder):
 
 def draw_shows(records, folder):
     """The rate at which each frame came; dots where a rebuild was made or under way."""
-    panels = [(scene, kind) for scene in tables.each(records, 'scene') for kind in ('uniform', 'hierarchical')]
-    figure, grid = plt.subplots(len(panels) // 2, 2, figsize=(12, 3.6 * (len(panels) // 2) + 0.8),
-                                layout='constrained', squeeze=False)
-    for axes, (scene, kind) in zip(grid.flat, panels):
-        for r in records:
-            if r['scene'] != scene or r['kind'] not in (kind, 'loose'):
-                continue
+    scenes = tables.each(records, 'scene')
+    figure, grid = plt.subplots(len(scenes), 1, figsize=(9, 3.2 * len(scenes) + 0.8), layout='constrained',
+                                squeeze=False)
+    for axes, scene in zip(grid.flat, scenes):
+        of_scene = [r for r in records if r['scene'] == scene]
+        for r in of_scene:
             loose = r['kind'] == 'loose'
             colour = LOOKS['loose'][1] if loose else MANNERS[r['manner']]
             rate = [1000 / ms for ms in r['ms']]
@@ -67,11 +66,10 @@ def draw_shows(records, folder):
                       label='loose grid' if loose else r['manner'])
             busy = [i for i in range(len(rate)) if tables.busy(r, i)]
             axes.plot(busy, [rate[i] for i in busy], color=colour, marker='o', linestyle='', markersize=4)
-        objects = next(r['objects'] for r in records if r['scene'] == scene)
-        axes.set(title=f'{scene}, {objects} objects, {kind} grid', yscale='log', ylabel='frames a second')
+        first = of_scene[0]
+        axes.set(title=f"{scene}, {first['objects']} objects, {first['kind']} grid", yscale='log', ylabel='frames a second')
         axes.grid(alpha=0.25, which='both')
-    for axes in grid[-1]:
-        axes.set_xlabel('frame: the scene grows to several times its first box')
+    grid[-1, 0].set_xlabel('frame: the scene grows to several times its first box')
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc='outside lower center', ncols=len(labels))
     figure.suptitle('Dots: a rebuild was made in this frame or was under way', fontsize=10)

@@ -72,7 +72,7 @@ static bool outgrown(const rg_grid_report *report) {
 }
 
 static void update(struct show *show, struct own *own) {
-    own_move_many(own, own->objects, show->animation->bodies->positions, show->animation->bodies->count);
+    own_move_many(own, own->objects, show->animation->bodies->positions, show->animation->moving);
     if (show->manner != REBUILD_IN_FRAME) return;
     rg_grid_report report = own_grid_report(own);
     if (outgrown(&report)) own_check(rg_grid_rebuild(own->scene, RG_GRID_OF_SCENE));
@@ -176,35 +176,32 @@ static void report(const struct show *show, json_t *records) {
                                     rebuilding, "rebuilt", rebuilt, "tiles", tiles, "judged", show->judged));
 }
 
-void evaluate_shows(struct evaluation *evaluation) {
-    static const struct {
-        rg_grid_kind kind;
-        enum manner manner;
-    } ALL[] = {{RG_GRID_UNIFORM, REBUILD_IN_FRAME},   {RG_GRID_UNIFORM, REBUILD_NEVER},
-               {RG_GRID_UNIFORM, REBUILD_BESIDE},     {RG_GRID_HIERARCHICAL, REBUILD_IN_FRAME},
-               {RG_GRID_HIERARCHICAL, REBUILD_NEVER}, {RG_GRID_HIERARCHICAL, REBUILD_BESIDE},
-               {RG_GRID_LOOSE, REBUILD_BESIDE}};
-    enum { SHOWS = sizeof ALL / sizeof *ALL };
+/* All shows of one scene, in turn. */
+static void play_all(struct evaluation *evaluation, const char *scene, uint32_t count, rg_grid_kind kind) {
+    enum { SHOWS = MANNERS + 1 };
     json_t *records = evaluation_array(evaluation, "shows");
-    for (int s = 0; s < 2; s++) {
-        struct animation *animation = s ? animation_create("crowd", evaluation->effort.shown_crowd)
-                                        : animation_create("flake", evaluation->effort.shown_flake);
-        struct show *shows[SHOWS];
+    struct animation *animation = animation_create(scene, count);
+    struct show *shows[SHOWS];
+    for (int i = 0; i < MANNERS; i++) shows[i] = show_create(evaluation, animation, kind, (enum manner)i);
+    shows[MANNERS] = show_create(evaluation, animation, RG_GRID_LOOSE, REBUILD_BESIDE);
+    for (int run = 0; run < evaluation->effort.runs; run++) {
         for (int i = 0; i < SHOWS; i++) {
-            shows[i] = show_create(evaluation, animation, ALL[i].kind, ALL[i].manner);
+            double start = bench_wall_seconds();
+            play(shows[i]);
+            fprintf(stderr, "%s, %s, %s: %.1f s\n", scene, own_kind_name(shows[i]->kind),
+                    MANNER_NAMES[shows[i]->manner], bench_wall_seconds() - start);
         }
-        for (int run = 0; run < evaluation->effort.runs; run++) {
-            for (int i = 0; i < SHOWS; i++) {
-                double start = bench_wall_seconds();
-                play(shows[i]);
-                fprintf(stderr, "%s, %s, %s: %.1f s\n", animation->bodies->name, own_kind_name(ALL[i].kind),
-                        MANNER_NAMES[ALL[i].manner], bench_wall_seconds() - start);
-            }
-        }
-        for (int i = 0; i < SHOWS; i++) {
-            report(shows[i], records);
-            show_destroy(shows[i]);
-        }
-        animation_destroy(animation);
     }
+    for (int i = 0; i < SHOWS; i++) {
+        report(shows[i], records);
+        show_destroy(shows[i]);
+    }
+    animation_destroy(animation);
+}
+
+void evaluate_shows(struct evaluation *evaluation) {
+    const struct evaluation_effort *effort = &evaluation->effort;
+    play_all(evaluation, "flake", effort->shown_flake, RG_GRID_HIERARCHICAL);
+    play_all(evaluation, "crowd", effort->shown_crowd, RG_GRID_HIERARCHICAL);
+    play_all(evaluation, "escape", effort->shown_escape, RG_GRID_UNIFORM);
 }

@@ -14,9 +14,11 @@ enum {
     RESOLUTION = 64,
     SMALLEST = 512,      /* the smallest visitor's diameter: a 512th of the scene */
     MOST = 256,          /* visitors at once */
-    CALLS = 4096,        /* at least, of each kind in a turn, where they are small */
+    CALLS = 4096,        /* of each kind in a turn, unless that takes too long */
     MOST_CELLS = 1 << 20 /* that a uniform grid lists all visitors in */
 };
+
+static const double ENOUGH = 0.05; /* seconds of a turn */
 
 /* The same spheres, and visitors behind them in number. */
 static struct bench_scene *create_bodies(uint32_t residents, uint32_t visitors, double radius) {
@@ -48,14 +50,14 @@ static json_t *judge(struct evaluation *evaluation, struct own *own) {
     return verdict;
 }
 
-/* All visitors go and come back so often; the least seconds of a call of each kind. */
+/* All visitors go and come back, again and again; the least seconds of a call of each kind. */
 static void come_and_go(struct own *own, uint32_t residents, int turns, double *insert, double *removal) {
-    uint32_t count = own->bodies->count - residents, passes = 1 + (CALLS - 1) / MOST;
-    if (count < MOST) passes = 1;
+    uint32_t count = own->bodies->count - residents;
     *insert = *removal = INFINITY;
     for (int turn = 0; turn < turns; turn++) {
         double removing = 0, inserting = 0;
-        for (uint32_t pass = 0; pass < passes; pass++) {
+        uint32_t calls = 0;
+        for (; calls < CALLS && removing + inserting < ENOUGH; calls += count) {
             double start = bench_thread_seconds();
             for (uint32_t i = residents; i < own->bodies->count; i++) own_remove(own, i);
             double removed = bench_thread_seconds();
@@ -63,8 +65,8 @@ static void come_and_go(struct own *own, uint32_t residents, int turns, double *
             inserting += bench_thread_seconds() - removed;
             removing += removed - start;
         }
-        *insert = fmin(*insert, inserting / (passes * count));
-        *removal = fmin(*removal, removing / (passes * count));
+        *insert = fmin(*insert, inserting / calls);
+        *removal = fmin(*removal, removing / calls);
     }
 }
 

@@ -72,10 +72,11 @@ def busy(show, frame):
 
 
 def ratio(show, frame):
-    """Of a frame's time to the median of its nearest neighbours that saw nothing of a rebuild."""
+    """Of a frame's time to that of its neighbours that saw nothing of a rebuild: the median of those before it or of
+    those after it, whichever is longer, for a grid that suits the scene better or worse than the last is no dip."""
     quiet = [i for i in range(len(show['ms'])) if not busy(show, i) and i != frame]
-    near = [i for i in quiet if i < frame][-NEIGHBOURS:] + [i for i in quiet if i > frame][:NEIGHBOURS]
-    return show['ms'][frame] / statistics.median(show['ms'][i] for i in near)
+    sides = [[i for i in quiet if i < frame][-NEIGHBOURS:], [i for i in quiet if i > frame][:NEIGHBOURS]]
+    return show['ms'][frame] / max(statistics.median(show['ms'][i] for i in side) for side in sides if side)
 
 
 def largest(show, wanted):
