@@ -14,7 +14,7 @@ static void insert_outside(struct own *own) {
     double side = 0, at[3];
     rg_shape *shape;
     for (int k = 0; k < 3; k++) side = fmax(side, report.physical_hi[k] - report.physical_lo[k]);
-    for (int k = 0; k < 3; k++) at[k] = report.physical_lo[k] - 0.02 * side;
+    for (int k = 0; k < 3; k++) at[k] = report.physical_lo[k] - 0.05 * side;
     rg_pose pose = rg_pose_at(at[0], at[1], at[2]);
     own_check(rg_shape_create_sphere(NULL, 0.005 * side, &shape));
     own_check(rg_scene_insert(own->scene, shape, &pose, NULL));
