@@ -18,6 +18,10 @@ double bench_thread_seconds(void) {
     return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }
 
+double bench_process_seconds(void) {
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
+
 double bench_wall_seconds(void) {
     return seconds_of(CLOCK_MONOTONIC);
 }

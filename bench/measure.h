@@ -25,6 +25,9 @@ enum { BENCH_TURNS = 15 };
 /** Seconds of processor time that this thread has used: others on the machine do not count. */
 double bench_thread_seconds(void);
 
+/** The same of all threads of this process. */
+double bench_process_seconds(void);
+
 /** Seconds since some time in the past. */
 double bench_wall_seconds(void);
 
