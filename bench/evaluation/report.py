@@ -41,8 +41,8 @@ def draw_resolutions(records, folder):
             axes.set(xscale='log', yscale='log')
             axes.set_xticks(resolutions, [str(r) for r in resolutions], minor=False)
             axes.minorticks_off()
-            axes.grid(alpha=0.25, which='both')
-        grid[0, column].set_title(f"{scene}, {of_scene[0]['objects']} objects")
+            axes.grid(alpha=0.25)
+        grid[0, column].set_title(f"{scene}, {of_scene[0]['objects']:,} objects")
         grid[1, column].set_xlabel('cells along the longest side')
     grid[0, 0].set_ylabel('frames a second\n(primary and shadow rays, one thread)')
     grid[1, 0].set_ylabel('updates a second\n(all objects move, one thread)')
@@ -67,8 +67,9 @@ def draw_shows(records, folder):
             busy = [i for i in range(len(rate)) if tables.busy(r, i)]
             axes.plot(busy, [rate[i] for i in busy], color=colour, marker='o', linestyle='', markersize=4)
         first = of_scene[0]
-        axes.set(title=f"{scene}, {first['objects']} objects, {first['kind']} grid", yscale='log', ylabel='frames a second')
-        axes.grid(alpha=0.25, which='both')
+        axes.set(title=f"{scene}, {first['objects']:,} objects, {first['kind']} grid", yscale='log',
+                 ylabel='frames a second')
+        axes.grid(alpha=0.25)
     grid[-1, 0].set_xlabel('frame: the scene grows to several times its first box')
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc='outside lower center', ncols=len(labels))
@@ -84,10 +85,10 @@ def draw_sizes(records, folder):
             lines_with_marks(axes, kind, [r['size'] for r in points], [r[key] for r in points])
         axes.axvline(1 / records[0]['resolution'], color='grey', linestyle=':', linewidth=1)
         axes.set(title=title, xscale='log', yscale='log', xlabel="object's diameter / scene's side")
-        axes.grid(alpha=0.25, which='both')
+        axes.grid(alpha=0.25)
     grid[0].set_ylabel('ns a call')
     grid[0].legend()
-    figure.suptitle(f"One object of each size into {records[0]['objects']} equal ones, resolution "
+    figure.suptitle(f"One object of each size into {records[0]['objects']:,} equal ones, resolution "
                     f"{records[0]['resolution']}; dotted: a cell", fontsize=10)
     save(figure, folder, 'sizes')
 
@@ -108,7 +109,7 @@ def draw_counts(records, folder):
                                  label='peer, one object alone', linestyle=':')
         for axes in grid[:, column]:
             axes.set(xscale='log', yscale='log')
-            axes.grid(alpha=0.25, which='both')
+            axes.grid(alpha=0.25)
         grid[0, column].set_title(scene)
         grid[1, column].set_xlabel('objects')
     grid[0, 0].set_ylabel('frames a second\n(primary and shadow rays, one thread)')

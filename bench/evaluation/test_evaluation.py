@@ -21,8 +21,8 @@ ROUND = {**COMMON, 'side': str, 'resolution': (int, type(None)), 'primary ms': f
 SCHEMA = {
     'resolutions': ROUND,
     'counts': ROUND,
-    'shows': {**COMMON, 'kind': str, 'manner': str, 'threads': int, 'runs': int, 'ms': list, 'update ms': list, 'processor ms': list,
-              'rebuilding': list, 'rebuilt': list, 'tiles': list, 'judged': dict},
+    'shows': {**COMMON, 'kind': str, 'manner': str, 'threads': int, 'runs': int, 'ms': list, 'update ms': list,
+              'processor ms': list, 'rebuilding': list, 'rebuilt': list, 'tiles': list, 'judged': dict},
     'sizes': {**COMMON, 'kind': str, 'resolution': int, 'size': float, 'insert ns': float, 'remove ns': float,
               'judged': dict},
     'goal': {**COMMON, 'threads': int, 'frames': int, 'median ms': float, 'best ms': float,
