@@ -25,7 +25,7 @@ SCHEMA = {
               'processor ms': list, 'rebuilding': list, 'rebuilt': list, 'tiles': list, 'judged': dict},
     'sizes': {**COMMON, 'kind': str, 'resolution': int, 'size': float, 'insert ns': float, 'remove ns': float,
               'judged': dict},
-    'goal': {**COMMON, 'threads': int, 'frames': int, 'median ms': float, 'best ms': float,
+    'goal': {**COMMON, 'threads': int, 'frames': int, 'median ms': float, 'best ms': float, 'processor ms': float,
              'frames a second': float, 'primary': dict, 'shadow': dict},
 }
 
