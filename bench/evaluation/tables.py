@@ -96,9 +96,9 @@ def shows(records):
                      f"{statistics.median(r['update ms']):.1f}",
                      f"{statistics.mean(r['ms'][-8:]):.1f}", len(frames), largest(r, True), largest(r, False),
                      r['tiles'][-1], share([r['judged']])])
-    return table(['scene', 'grid', 'manner', 'ms a frame, median', 'processor ms', 'update ms', 'the last 8 frames, ms',
-                  'frames with a rebuild', 'largest ratio of these, wall / processor', 'of the others', 'tiles at the end',
-                  'wrong / checked'], rows)
+    return table(['scene', 'grid', 'manner', 'ms a frame, median', 'processor ms', 'update ms',
+                  'the last 8 frames, ms', 'frames with a rebuild', 'largest ratio of these, wall / processor',
+                  'of the others', 'tiles at the end', 'wrong / checked'], rows)
 
 
 def sizes(records):
@@ -132,7 +132,8 @@ def counts(records):
 def goal(records):
     return table(['spheres', 'threads', 'frames/s', 'ms a frame, median', 'best', 'processor ms', 'wrong / checked'],
                  [[f"{r['objects']:,}", r['threads'], f"{r['frames a second']:.1f}", f"{r['median ms']:.1f}",
-                   f"{r['best ms']:.1f}", f"{r['processor ms']:.1f}", share([r['primary'], r['shadow']])] for r in records])
+                   f"{r['best ms']:.1f}", f"{r['processor ms']:.1f}", share([r['primary'], r['shadow']])]
+                  for r in records])
 
 
 def markdown(report):
