@@ -3,6 +3,7 @@
 import statistics
 
 NEIGHBOURS = 3  # on either side of a frame
+VERDICTS = ('primary', 'shadow', 'moved', 'judged')
 
 
 def each(records, key):
@@ -136,9 +137,18 @@ def goal(records):
                   for r in records])
 
 
+def totals(report):
+    """Of all experiments; of the peer apart."""
+    verdicts = {True: [], False: []}
+    for records in report.values():
+        for r in records if isinstance(records, list) else []:
+            verdicts[r.get('side') == 'peer'] += [r[key] for key in VERDICTS if key in r]
+    return f"Wrong answers of those that were checked: raygrid {share(verdicts[False])}, peer {share(verdicts[True])}."
+
+
 def markdown(report):
     parts = [
-        about(report['run']),
+        about(report['run']) + ' ' + totals(report),
         '**(a) Frames a second**, primary and shadow rays, by the resolution of the grid; one thread:',
         resolutions(report['resolutions'], 'frames a second', short),
         '**(b) Updates a second**, all objects moving, by the resolution of the grid; one thread:',

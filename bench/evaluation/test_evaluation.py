@@ -39,7 +39,7 @@ def verdicts(report):
     """Each with where it is from."""
     for name in SCHEMA:
         for record in report[name]:
-            for key in ('primary', 'shadow', 'moved', 'judged'):
+            for key in tables.VERDICTS:
                 if key in record:
                     yield (name, record['scene'], record.get('side', record.get('kind')), key), record[key]
 
