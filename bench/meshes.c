@@ -91,7 +91,7 @@ static void judge(struct smithy *s, struct bench_line *line, struct exact_error 
     line->error = &errors[0];
     if (s->peer) {
         peer_trace(s->peer, s->rays, (struct peer_way){0, false}, &s->answers);
-        errors[1] = bench_judge_peer(sample, s->peer, &s->answers);
+        errors[1] = verdict_of_peer(sample, s->peer, &s->answers);
         line->peer_error = &errors[1];
     }
     exact_sample_destroy(sample);

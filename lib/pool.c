@@ -6,7 +6,11 @@
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
+
+/* Of the time of a worker that has jobs to do, spare work gets one part in so many. */
+enum { SPARE_SHARE = 5 };
 
 /* A call that is being worked on, in the caller's stack. Workers that joined are counted under the pool's lock, so
  * the caller knows when the last has left and the job may vanish. */
@@ -29,7 +33,7 @@ struct rgi_pool {
     bool ending;
     rgi_spare_work spare_work;
     void *spare_context;
-    bool has_spare_work, spare_taken;
+    bool has_spare_work, spare_taken; /* read without the lock, too */
     pthread_mutex_t lock;
     pthread_cond_t work; /* a job came, or the end */
     pthread_cond_t done; /* a worker left a job */
@@ -37,12 +41,16 @@ struct rgi_pool {
     pthread_t *threads;
 };
 
+/* False: there was nothing left of it. */
+static bool work_once(job *j) {
+    uint64_t index = __atomic_fetch_add(&j->taken, 1, __ATOMIC_RELAXED);
+    if (index >= j->count) return false;
+    j->body(j->context, index);
+    return true;
+}
+
 static void work_on(job *j) {
-    for (;;) {
-        uint64_t index = __atomic_fetch_add(&j->taken, 1, __ATOMIC_RELAXED);
-        if (index >= j->count) return;
-        j->body(j->context, index);
-    }
+    while (work_once(j)) continue;
 }
 
 #if !defined(RGI_NO_THREADS)
@@ -50,44 +58,64 @@ static bool has_work(const job *j) {
     return __atomic_load_n(&j->taken, __ATOMIC_RELAXED) < j->count;
 }
 
-/* With the lock held, but not while it works. */
-static void join(rgi_pool *pool, job *j) {
+static bool has_spare(const rgi_pool *pool) {
+    return __atomic_load_n(&pool->has_spare_work, __ATOMIC_RELAXED) &&
+           !__atomic_load_n(&pool->spare_taken, __ATOMIC_RELAXED);
+}
+
+/* Seconds. */
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Until nothing is left, or there is spare work as well. With the lock held, but not while it works. Returns the
+ * seconds that it took, if there is spare work. */
+static double join(rgi_pool *pool, job *j) {
+    double start = 0;
+    bool spare = false;
     j->joined++;
     pthread_mutex_unlock(&pool->lock);
-    work_on(j);
+    do {
+        spare = has_spare(pool);
+        if (spare) start = now();
+    } while (work_once(j) && !spare);
     pthread_mutex_lock(&pool->lock);
     if (--j->joined == 0) pthread_cond_broadcast(&pool->done);
+    return spare ? now() - start : 0;
 }
 
-static bool has_spare(const rgi_pool *pool) {
-    return pool->has_spare_work && !pool->spare_taken;
-}
-
-static void do_spare(rgi_pool *pool) {
-    pool->spare_taken = true;
-    pool->has_spare_work = false; /* another wake meanwhile is not lost */
+/* For so many seconds; one part of it at least. With the lock held, but not while it works. */
+static void do_spare(rgi_pool *pool, double seconds) {
+    __atomic_store_n(&pool->spare_taken, true, __ATOMIC_RELAXED);
     pthread_mutex_unlock(&pool->lock);
-    bool more = pool->spare_work(pool->spare_context);
+    double start = now();
+    bool more;
+    do {
+        /* Cleared before: so another wake meanwhile is not lost. */
+        __atomic_store_n(&pool->has_spare_work, false, __ATOMIC_RELAXED);
+        more = pool->spare_work(pool->spare_context);
+    } while (more && now() - start < seconds);
     pthread_mutex_lock(&pool->lock);
-    pool->has_spare_work |= more;
-    pool->spare_taken = false;
+    if (more) __atomic_store_n(&pool->has_spare_work, true, __ATOMIC_RELAXED);
+    __atomic_store_n(&pool->spare_taken, false, __ATOMIC_RELAXED);
 }
 
-/* Jobs first, but after each a part of the spare work: so that gets on under any load. */
+/* Jobs first, but spare work has its share of the time: so that gets on under any load. */
 static void *worker(void *argument) {
     rgi_pool *pool = argument;
-    bool worked = false;
+    double worked = 0; /* seconds, since the last spare work */
     pthread_mutex_lock(&pool->lock);
     for (;;) {
         job *j = pool->jobs;
         while (j && !has_work(j)) j = j->next;
         if (pool->ending && !j) break;
-        if (has_spare(pool) && (!j || worked)) {
-            worked = false;
-            do_spare(pool);
+        if (has_spare(pool) && (!j || worked > 0)) {
+            do_spare(pool, worked / (SPARE_SHARE - 1));
+            worked = 0;
         } else if (j) {
-            worked = true;
-            join(pool, j);
+            worked = join(pool, j);
         } else {
             pthread_cond_wait(&pool->work, &pool->lock);
         }
@@ -161,7 +189,7 @@ static rg_result make_threads(rgi_pool *pool, uint32_t workers) {
 void rgi_pool_wake(rgi_pool *pool) {
     if (!rgi_pool_has_threads(pool)) return;
     pthread_mutex_lock(&pool->lock);
-    pool->has_spare_work = true;
+    __atomic_store_n(&pool->has_spare_work, true, __ATOMIC_RELAXED);
     pthread_cond_signal(&pool->work);
     pthread_mutex_unlock(&pool->lock);
 }

@@ -127,6 +127,53 @@ START_TEST(the_hosts_own) {
 }
 END_TEST
 
+/* Spare work of some parts, beside a job of many. */
+static struct {
+    uint32_t parts;  /* atomic: that are left */
+    uint64_t taken;  /* atomic: of the job */
+    uint64_t before; /* so many of them when the last part was done */
+    pthread_t caller;
+} spare;
+
+enum { PARTS = 10, LONG_JOB = 5000000 };
+
+static bool spare_part(void *context) {
+    (void)context;
+    uint32_t left = __atomic_sub_fetch(&spare.parts, 1, __ATOMIC_RELEASE);
+    if (!left) spare.before = __atomic_load_n(&spare.taken, __ATOMIC_RELAXED);
+    return left > 0;
+}
+
+/* The caller is kept until the spare work is done, so that the worker alone gets on with the job. */
+static void beside_spare(void *context, uint64_t index) {
+    const struct timespec briefly = {0, 100000};
+    (void)context, (void)index;
+    __atomic_fetch_add(&spare.taken, 1, __ATOMIC_RELAXED);
+    while (pthread_equal(pthread_self(), spare.caller) && __atomic_load_n(&spare.parts, __ATOMIC_ACQUIRE))
+        nanosleep(&briefly, NULL);
+}
+
+/* Spare work gets on while a worker has a long job to do. */
+START_TEST(spare_work_gets_on) {
+    rgi_memory memory;
+    rgi_pool *pool;
+    rgi_memory_init(&memory, NULL);
+    ck_assert_int_eq(rgi_pool_create(&memory, 2, NULL, NULL, &pool), RG_OK);
+    rgi_pool_set_spare_work(pool, spare_part, NULL);
+    for (int turn = 0; turn < 5; turn++) {
+        spare.caller = pthread_self();
+        spare.parts = PARTS;
+        spare.taken = 0;
+        rgi_pool_wake(pool);
+        rgi_pool_run(pool, LONG_JOB, beside_spare, NULL);
+        ck_assert_uint_eq(spare.parts, 0);
+        ck_assert_uint_eq(spare.taken, LONG_JOB);
+        ck_assert_uint_lt(spare.before, LONG_JOB / 2);
+    }
+    rgi_pool_destroy(pool);
+}
+END_TEST
+
 Suite *unit_suite(void) {
     Suite *suite = suite_create("pool");
     TCase *tests = tcase_create("pool");
@@ -135,6 +182,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, several_callers_at_once);
     tcase_add_test(tests, signals_are_for_the_host);
     tcase_add_test(tests, the_hosts_own);
+    tcase_add_test(tests, spare_work_gets_on);
     suite_add_tcase(suite, tests);
     return suite;
 }
