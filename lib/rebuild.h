@@ -4,9 +4,9 @@
  * while the first goes on to serve traces and changes; then it takes its place. Objects below a slot, the cursor, are
  * in both grids, and changes of them are made in both: so nothing has to be caught up with when it is done.
  *
- * The steps are made by a worker of the pool that has nothing else to do, holding the scene as traces do and letting
- * changes go first; without workers, by the changes themselves, each a little. If there is no memory for it, the
- * rebuild is given up and the grid serves on as it is.
+ * The steps are made by a worker of the pool, in a fifth of its time or more, holding the scene as traces do and
+ * letting changes go first; without workers, by the changes themselves, each a little. If there is no memory for it,
+ * the rebuild is given up and the grid serves on as it is.
  */
 #ifndef RAYGRID_LIB_REBUILD_H
 #define RAYGRID_LIB_REBUILD_H
@@ -31,7 +31,7 @@ void rgi_rebuild_insert(rgi_any_grid *grid, rg_scene *scene, uint32_t slot, cons
 void rgi_rebuild_move(rgi_any_grid *grid, rg_scene *scene, uint32_t slot, const rgi_bound *bound);
 void rgi_rebuild_remove(rgi_any_grid *grid, rg_scene *scene, uint32_t slot);
 
-/** What a worker does when it has nothing else to do: a part of some rebuild of the scene. Returns whether there is
+/** What a worker does beside its jobs: a part of some rebuild of the scene. Returns whether there is
  * more. */
 bool rgi_rebuild_work(void *scene);
 
