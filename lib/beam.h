@@ -21,6 +21,7 @@ struct rgi_mesh_packet;
 struct rgi_object;
 struct rgi_wrap;
 struct rgi_cut;
+struct rgi_making;
 
 /** Entries of a beam's stack; what goes deeper is walked by recursion. */
 enum { RGI_STACK = 256 };
@@ -199,6 +200,8 @@ struct rgi_kernels {
     /** Finds the plane between bins that parts the items of a mesh at the least cost; `fill`: items of a leaf. */
     void (*find_split)(const struct rgi_wrap *items, uint32_t count, const struct rgi_wrap *centres,
                        const float scales[3], uint32_t bins, uint32_t fill, struct rgi_cut *best);
+    /** Makes items of triangles, or of runs of them. */
+    void (*wrap_items)(const struct rgi_making *making);
     /** The box of a leaf whose vertices are new, without a pad; sets what follows from them. */
     void (*measure_leaf)(const struct rgi_mesh *mesh, void *leaf, float lo[3], float hi[3]);
 };

@@ -60,6 +60,36 @@ static void find_split(const rgi_wrap *items, uint32_t count, const rgi_wrap *ce
     }
 }
 
+/* ------------------------------------------------------------------------------------------------- items */
+
+/* Of a point. */
+RGI_INLINE f8 wrap_of(const float at[4]) {
+    static const float signs[8] __attribute__((aligned(32))) = {1, 1, 1, 1, -1, -1, -1, -1};
+    return f8_mul(f8_twice(at), f8_load(signs));
+}
+
+RGI_INLINE f8 wrap_of_triangle(const rgi_making *m, uint32_t i) {
+    return f8_min(f8_min(wrap_of(rgi_corner(m, i, 0)), wrap_of(rgi_corner(m, i, 1))), wrap_of(rgi_corner(m, i, 2)));
+}
+
+RGI_INLINE f8 wrap_of_run(const rgi_making *m, const rgi_run *run) {
+    if (m->mesh->soup) {
+        f8 box = wrap_of_triangle(m, m->order[run->first]);
+        for (uint32_t k = 1; k < run->count; k++) box = f8_min(box, wrap_of_triangle(m, m->order[run->first + k]));
+        return box;
+    }
+    f8 box = wrap_of(m->at[run->numbers[0]]);
+    for (uint32_t k = 1; k < run->vertices; k++) box = f8_min(box, wrap_of(m->at[run->numbers[k]]));
+    return box;
+}
+
+static void wrap_items(const rgi_making *m) {
+    for (uint32_t i = 0; i < m->item_count; i++) {
+        f8_store(m->items[i].least, m->runs ? wrap_of_run(m, &m->runs[i]) : wrap_of_triangle(m, i));
+        memcpy(&m->items[i].least[3], &i, sizeof i);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ leaves */
 
 RGI_INLINE f16 f16_apart(f16 a, f16 b) {

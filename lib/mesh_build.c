@@ -15,7 +15,6 @@
 enum {
     /* Fewer leaves than that are parted by number, so that they are full. */
     FEW_LEAVES = 4,
-    FEW_LEAVES_FAST = 32,
     /* Parts that a large tree is cut into, to be made side by side, and how many triangles are large. */
     PARTS = 128,
     LEAST_SHARED = 16384,
@@ -77,15 +76,15 @@ static uint32_t part_items(rgi_item *items, uint32_t count, const rgi_wrap *cent
 /* Whether the triangles of some items have no more vertices than a leaf holds. */
 static bool leaf_holds(const rgi_making *m, uint32_t first, uint32_t count) {
     uint32_t seen[RGI_LEAF], vertices = 0;
+    if (m->fast) return count == 1;
     if (m->mesh->soup) return count <= RGI_SOUP_LEAF;
     if (count > RGI_LEAF) return false;
     if (3 * count <= RGI_LEAF) return true;
     memset(seen, 0xFF, sizeof seen); /* no vertex has that number */
     for (uint32_t i = first; i < first + count; i++) {
-        uint32_t triangle;
-        memcpy(&triangle, &m->items[i].least[3], sizeof triangle);
+        const uint32_t *triangle = m->triangles[rgi_item_number(&m->items[i])];
         for (int c = 0; c < 3; c++) {
-            uint32_t v = m->triangles[triangle][c], known = 0;
+            uint32_t v = triangle[c], known = 0;
             for (int k = 0; k < RGI_LEAF; k++) known |= seen[k] == v;
             if (known) continue;
             if (vertices == RGI_LEAF) return false;
@@ -108,6 +107,7 @@ static float share(const rgi_branch *left, const rgi_branch *right, int places, 
 }
 
 static void find_costs(const rgi_making *m, rgi_branch *b) {
+    if (m->fast) return;
     const rgi_branch *left = m->branches + b->children, *right = left + 1;
     float area = rgi_wrap_half_area(&b->box), leaf = (float)INFINITY;
     memset(b->places, 0, sizeof b->places);
@@ -162,29 +162,22 @@ static float half_area_of(const rgi_item *items, uint32_t count) {
     return rgi_wrap_half_area(&w);
 }
 
-/* Leaves the scale of the longest axis alone: the others are 0, as of axes along which nothing can be parted. */
-static void keep_widest(float scales[3]) {
+/* The axis along which the centres are farthest apart. */
+static int widest_axis(const rgi_wrap *centres) {
     int widest = 0;
     for (int a = 1; a < 3; a++) {
-        if (scales[a] > 0 && (scales[a] < scales[widest] || scales[widest] == 0)) widest = a;
+        if (centres->least[a] + centres->least[a + 4] < centres->least[widest] + centres->least[widest + 4])
+            widest = a;
     }
-    for (int a = 0; a < 3; a++) {
-        if (a != widest) scales[a] = 0;
-    }
+    return widest;
 }
 
-/* Parts items by number along the best axis, or the one that has a scale: whole leaves to the left, near the middle.
- * Returns how many that are. */
-static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill, const float *scales) {
+/* Parts items by number along the best axis: whole leaves to the left, near the middle. Returns how many that are. */
+static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill) {
     uint32_t leaves = (count + fill - 1) / fill, left = leaves / 2 * fill;
     float least = (float)INFINITY;
     int best = 2;
     if (left == 0 || left >= count) left = count / 2;
-    for (int a = 0; a < 3 && scales; a++) {
-        if (!(scales[a] > 0)) continue;
-        select_items(items, count, a, left);
-        return left;
-    }
     for (int a = 0; a < 3; a++) {
         select_items(items, count, a, left);
         float area = half_area_of(items, left) * (float)left +
@@ -197,21 +190,28 @@ static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill, c
     return left;
 }
 
+/* In a hurry: of few leaves half to each side along the axis on which they are farthest apart. */
+static uint32_t part_in_half(rgi_item *items, uint32_t count, const rgi_wrap *centres) {
+    select_items(items, count, widest_axis(centres), count / 2);
+    return count / 2;
+}
+
 /* Parts items where that costs least. Returns how many go to the left. */
 static uint32_t part_items_of(const rgi_making *m, const part *p, rgi_wrap *left, rgi_wrap *right) {
     rgi_item *items = m->items + p->first;
-    uint32_t bins = p->count < 16 * RGI_BINS || m->fast ? RGI_BINS / 2 : RGI_BINS, count;
-    bool few = p->count <= (m->fast ? FEW_LEAVES_FAST : FEW_LEAVES) * m->fill;
+    uint32_t fill = m->fast ? 1 : m->fill, count;
+    uint32_t bins = p->count < 16 * RGI_BINS || m->fast ? RGI_BINS / 2 : RGI_BINS;
+    bool few = p->count <= FEW_LEAVES * fill;
     rgi_cut cut = {-1, 0, 0};
     float scales[3];
     bin_scales(&p->centres, bins, scales);
-    if (m->fast) keep_widest(scales);
     rgi_wrap_empty(left);
     rgi_wrap_empty(right);
     if (!few && p->depth < MOST_DEPTH)
-        m->mesh->kernels->find_split(items, p->count, &p->centres, scales, bins, m->fill, &cut);
+        m->mesh->kernels->find_split(items, p->count, &p->centres, scales, bins, fill, &cut);
     if (cut.axis >= 0) return part_items(items, p->count, &p->centres, scales, &cut, left, right);
-    count = few ? part_by_number(items, p->count, m->fill, m->fast ? scales : NULL) : p->count / 2;
+    count = !few ? p->count / 2 : m->fast ? part_in_half(items, p->count, &p->centres)
+                                          : part_by_number(items, p->count, fill);
     for (uint32_t i = 0; i < p->count; i++) grow_centres(i < count ? left : right, &items[i]);
     return count;
 }
@@ -275,31 +275,29 @@ static void end_branches(const later *l, uint32_t number) {
     end_branch(l->making, branch);
 }
 
-static void make_item(const rgi_making *m, uint32_t i) {
-    rgi_item *it = &m->items[i];
-    rgi_wrap_empty(it);
-    for (int c = 0; c < 3; c++) {
-        const float *v = m->at[m->triangles[i][c]];
-        const rgi_wrap corner = {{v[0], v[1], v[2], 0, -v[0], -v[1], -v[2], 0}};
-        rgi_wrap_grow(it, &corner);
-    }
-    memcpy(&it->least[3], &i, sizeof i);
+rg_result rgi_items_make(rgi_making *m) {
+    rg_result result =
+        rgi_allocate(m->mesh->memory, m->mesh->triangle_count, sizeof *m->items, "building a mesh", &m->items);
+    if (result) return result;
+    m->item_count = m->mesh->triangle_count;
+    m->mesh->kernels->wrap_items(m);
+    return RG_OK;
 }
 
 rg_result rgi_branches_make(rgi_making *m) {
-    part all = {0, m->mesh->triangle_count, 0, {{0}}};
+    part all = {0, m->item_count, 0, {{0}}};
+    rg_result result = rgi_allocate(m->mesh->memory, 2 * (uint64_t)m->item_count, sizeof *m->branches,
+                                    "building a mesh", &m->branches);
+    if (result) return result;
     rgi_wrap_empty(&all.centres);
-    for (uint32_t i = 0; i < all.count; i++) {
-        make_item(m, i);
-        grow_centres(&all.centres, &m->items[i]);
-    }
+    for (uint32_t i = 0; i < all.count; i++) grow_centres(&all.centres, &m->items[i]);
     m->used = 1;
     if (!m->pool || rgi_pool_workers(m->pool) == 1 || all.count < LEAST_SHARED) {
         make_branch(m, 0, &all, NULL);
         return RG_OK;
     }
     later *l;
-    rg_result result = rgi_allocate(m->mesh->memory, 1, sizeof *l, "building a mesh", &l);
+    result = rgi_allocate(m->mesh->memory, 1, sizeof *l, "building a mesh", &l);
     if (result) return result;
     l->making = m;
     l->most = all.count / (PARTS / 4);

@@ -7,13 +7,14 @@
 #include "pool.h"
 
 #include <math.h>
+#include <string.h>
 
 /** Eight floats: lo[3], a number, -hi[3], another. So one minimum each grows a box. */
 typedef struct rgi_wrap {
     float least[8];
 } rgi_wrap;
 
-/** A triangle while the tree is built: its box, and in least[3], as bits, its number. */
+/** A triangle or leaf while the tree is built: its box, and in least[3], as bits, its number. */
 typedef rgi_wrap rgi_item;
 
 /**
@@ -46,19 +47,35 @@ static inline int rgi_bin_of(float c, float lo, float scale) {
     return (int)((c - lo) * scale);
 }
 
+/** Triangles that are one leaf; of a soup only which they are. */
+typedef struct rgi_run {
+    uint32_t first, count, vertices;
+    uint32_t numbers[RGI_LEAF];
+    uint8_t corner[3][RGI_LEAF];
+} rgi_run;
+
 /** What a tree is made from, and on the way. */
 typedef struct rgi_making {
     rgi_mesh *mesh;
     uint32_t (*triangles)[3]; /* vertices by the caller's numbers */
-    bool in_order;            /* triangle i has the vertices 3i to 3i+2 */
-    float (*at)[3];           /* vertices in the frame */
+    bool in_order;            /* of a soup: triangle i has the vertices 3i to 3i+2 */
+    float (*at)[4];           /* vertices in the frame, and a 0 */
     rgi_item *items;
-    rgi_branch *branches; /* room for 2 a triangle: what is not used is never touched */
+    uint32_t item_count;
+    rgi_branch *branches; /* room for 2 an item: what is not used is never touched */
     uint32_t used;        /* atomic: branches */
     uint32_t fill;        /* triangles that a leaf holds as a rule */
-    bool fast;            /* built in a hurry */
-    rgi_pool *pool;       /* who helps */
+    bool fast;            /* built in a hurry: items are whole leaves, see mesh_runs.c */
+    uint32_t *order;      /* then: the triangles along a curve, */
+    rgi_run *runs;        /* and what each leaf has of it */
+    uint32_t run_room;
+    rgi_pool *pool; /* who helps */
 } rgi_making;
+
+/** A corner of a triangle, in the frame. */
+static inline const float *rgi_corner(const rgi_making *m, uint32_t triangle, uint32_t corner) {
+    return m->at[m->in_order ? 3 * triangle + corner : m->triangles[triangle][corner]];
+}
 
 /** RG_INVALID_VALUE if a vertex is not finite or too large; *floats: whether all are floats, of whatever type. */
 rg_result rgi_mesh_check(const rg_mesh_views *views, bool *floats);
@@ -66,14 +83,34 @@ rg_result rgi_mesh_check(const rg_mesh_views *views, bool *floats);
 /** Whether the frame can be that of the vertices, if they are floats: by the box of the mesh. */
 bool rgi_mesh_fits_floats(const rgi_mesh *mesh);
 
+/** The triangles, those of `like` if it is not NULL, and the box around them. RG_INVALID_VALUE, RG_OUT_OF_MEMORY. */
+rg_result rgi_triangles_copy(rgi_making *making, const rg_mesh_views *views, const rgi_mesh *like);
+
+/** The vertices, into the frame and the mesh. */
+void rgi_vertices_copy(rgi_making *making, const rg_mesh_views *views);
+
 /** Sets origin, scale, pads and middle of the frame for the box of the mesh. */
 void rgi_mesh_set_frame(rgi_mesh *mesh);
 
-/** Sets up items and branches and their costs. RG_OUT_OF_MEMORY. */
+/** Makes an item of each triangle. RG_OUT_OF_MEMORY, as those that follow. */
+rg_result rgi_items_make(rgi_making *making);
+
+/** In a hurry: makes leaves at once, and an item of each. */
+rg_result rgi_runs_make(rgi_making *making);
+void rgi_runs_free(rgi_making *making);
+
+/** Makes branches over the items. */
 rg_result rgi_branches_make(rgi_making *making);
 
 /** Makes lines, leaves, their numbers and root out of the branches. */
 rg_result rgi_lines_make(const rgi_making *making);
+
+/** The number of an item. */
+static inline uint32_t rgi_item_number(const rgi_item *item) {
+    uint32_t number;
+    memcpy(&number, &item->least[3], sizeof number);
+    return number;
+}
 
 static inline void rgi_wrap_empty(rgi_wrap *w) {
     for (int i = 0; i < 8; i++) w->least[i] = (float)INFINITY;

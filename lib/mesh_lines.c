@@ -27,8 +27,8 @@ typedef struct child {
     float lo[3], hi[3];
 } child;
 
-static bool is_leaf(const rgi_branch *b) {
-    return b->opened == 0;
+static bool is_leaf(const rgi_making *m, const rgi_branch *b) {
+    return m->fast ? b->children == 0 : b->opened == 0;
 }
 
 /* The subtrees that hang in `places` places. */
@@ -44,7 +44,25 @@ static uint32_t gather(const rgi_making *m, const rgi_branch *b, int places, con
     return count + gather(m, left + 1, places - of_left, out + count);
 }
 
+/* In a hurry: the largest is opened as long as there is room. */
+static uint32_t gather_largest(const rgi_making *m, const rgi_branch *b, const rgi_branch *out[RGI_CHILDREN]) {
+    float areas[RGI_CHILDREN];
+    uint32_t count = 0, next = 0;
+    do {
+        const rgi_branch *left = m->branches + (count ? out[next] : b)->children;
+        for (uint32_t k = 0; k < 2; k++) {
+            uint32_t at = k ? count : next;
+            out[at] = left + k;
+            areas[at] = left[k].children ? rgi_wrap_half_area(&left[k].box) : -1;
+            if (k || !count) count++;
+        }
+        for (uint32_t i = 0; i < count; i++) next = areas[i] > areas[next] ? i : next;
+    } while (count < RGI_CHILDREN && areas[next] >= 0);
+    return count;
+}
+
 static uint32_t gather_children(const rgi_making *m, const rgi_branch *b, const rgi_branch *out[RGI_CHILDREN]) {
+    if (m->fast) return gather_largest(m, b, out);
     const rgi_branch *left = m->branches + b->children;
     uint32_t count = gather(m, left, b->opened, out);
     return count + gather(m, left + 1, RGI_CHILDREN - b->opened, out + count);
@@ -52,7 +70,7 @@ static uint32_t gather_children(const rgi_making *m, const rgi_branch *b, const 
 
 static void count_lines(writer *w, const rgi_branch *b) {
     const rgi_branch *children[RGI_CHILDREN];
-    if (is_leaf(b)) {
+    if (is_leaf(w->making, b)) {
         w->lines += LEAF_LINES;
         w->leaves++;
         return;
@@ -72,37 +90,54 @@ static uint8_t lane_of(rgi_mesh_leaf *leaf, uint32_t numbers[RGI_LEAF], uint32_t
     return (uint8_t)leaf->vertices++;
 }
 
-/* The number of the triangle of an item. */
-static uint32_t number_of(const rgi_item *item) {
-    uint32_t number;
-    memcpy(&number, &item->least[3], sizeof number);
-    return number;
+static void list_triangles(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf, uint32_t *numbers) {
+    leaf->triangles = (uint16_t)b->count;
+    for (uint32_t t = 0; t < b->count; t++) {
+        leaf->primitive[t] = rgi_item_number(&m->items[b->first + t]);
+        const uint32_t *corners = m->triangles[leaf->primitive[t]];
+        for (int c = 0; c < 3; c++) leaf->corner[c][t] = lane_of(leaf, numbers, corners[c]);
+    }
+    for (uint32_t k = leaf->vertices; k < RGI_LEAF; k++) numbers[k] = numbers[0];
+}
+
+static void take_run(const rgi_making *m, const rgi_run *run, rgi_mesh_leaf *leaf, uint32_t *numbers) {
+    leaf->triangles = (uint16_t)run->count;
+    leaf->vertices = (uint16_t)run->vertices;
+    memcpy(leaf->primitive, m->order + run->first, run->count * sizeof *m->order);
+    memcpy(leaf->corner, run->corner, sizeof leaf->corner);
+    memcpy(numbers, run->numbers, sizeof run->numbers);
+}
+
+static const rgi_run *run_of(const rgi_making *m, const rgi_branch *b) {
+    return &m->runs[rgi_item_number(&m->items[b->first])];
 }
 
 static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf, uint32_t number) {
     uint32_t *numbers = m->mesh->numbers[number];
     memset(leaf, 0, sizeof *leaf);
     leaf->number = number;
-    leaf->triangles = (uint16_t)b->count;
-    for (uint32_t t = 0; t < b->count; t++) {
-        leaf->primitive[t] = number_of(&m->items[b->first + t]);
-        const uint32_t *corners = m->triangles[leaf->primitive[t]];
-        for (int c = 0; c < 3; c++) leaf->corner[c][t] = lane_of(leaf, numbers, corners[c]);
-    }
-    for (uint32_t k = leaf->vertices; k < RGI_LEAF; k++) numbers[k] = numbers[0];
-    for (int a = 0; a < 3; a++) {
-        for (int k = 0; k < RGI_LEAF; k++) leaf->at[a][k] = m->at[numbers[k]][a];
+    if (m->runs)
+        take_run(m, run_of(m, b), leaf, numbers);
+    else
+        list_triangles(m, b, leaf, numbers);
+    for (int k = 0; k < RGI_LEAF; k++) {
+        const float *at = m->at[numbers[k]];
+        for (int a = 0; a < 3; a++) leaf->at[a][k] = at[a];
     }
 }
 
 /* Lanes that hold no triangle are NaN, which no comparison lets pass. */
 static void write_soup_leaf(const rgi_making *m, const rgi_branch *b, rgi_soup_leaf *leaf) {
+    const float none[3] = {(float)NAN, (float)NAN, (float)NAN};
+    const rgi_run *run = m->runs ? run_of(m, b) : NULL;
     for (uint32_t t = 0; t < RGI_SOUP_LEAF; t++) {
-        bool used = t < b->count;
-        leaf->primitive[t] = used ? number_of(&m->items[b->first + t]) : RGI_NO_TRIANGLE;
-        for (int c = 0; c < 3; c++) {
-            for (int a = 0; a < 3; a++)
-                leaf->at[c][a][t] = used ? m->at[m->triangles[leaf->primitive[t]][c]][a] : (float)NAN;
+        bool used = t < (run ? run->count : b->count);
+        leaf->primitive[t] = !used ? RGI_NO_TRIANGLE
+                             : run ? m->order[run->first + t]
+                                   : rgi_item_number(&m->items[b->first + t]);
+        for (uint32_t c = 0; c < 3; c++) {
+            const float *at = used ? rgi_corner(m, leaf->primitive[t], c) : none;
+            for (int a = 0; a < 3; a++) leaf->at[c][a][t] = at[a];
         }
     }
 }
@@ -114,8 +149,8 @@ static void write_soup_leaf(const rgi_making *m, const rgi_branch *b, rgi_soup_l
  * farthest out first. So rays can go through them in the order of octants.
  */
 static void take_octants(const child children[RGI_CHILDREN], uint32_t count, uint32_t octants[RGI_CHILDREN]) {
-    float way[RGI_CHILDREN][3], lo[3], hi[3];
-    uint32_t placed = 0, taken = 0;
+    float way[RGI_CHILDREN][3], far[RGI_CHILDREN], lo[3], hi[3];
+    uint32_t order[RGI_CHILDREN], taken = 0;
     memcpy(lo, children[0].lo, sizeof lo);
     memcpy(hi, children[0].hi, sizeof hi);
     for (uint32_t i = 1; i < count; i++) {
@@ -125,24 +160,23 @@ static void take_octants(const child children[RGI_CHILDREN], uint32_t count, uin
         }
     }
     for (uint32_t i = 0; i < count; i++) {
+        uint32_t at = i;
         for (int a = 0; a < 3; a++) way[i][a] = (children[i].lo[a] - lo[a]) - (hi[a] - children[i].hi[a]);
+        far[i] = fabsf(way[i][0]) + fabsf(way[i][1]) + fabsf(way[i][2]);
+        for (; at > 0 && far[order[at - 1]] < far[i]; at--) order[at] = order[at - 1];
+        order[at] = i;
     }
     for (uint32_t n = 0; n < count; n++) {
-        uint32_t child = 0, octant = 0;
+        const float *w = way[order[n]];
+        uint32_t octant = 0;
         float most = -(float)INFINITY;
-        for (uint32_t i = 0; i < count; i++) {
-            for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
-                if (placed >> i & 1 || taken >> o & 1) continue;
-                float score = (o & 1 ? way[i][0] : -way[i][0]) + (o & 2 ? way[i][1] : -way[i][1]) +
-                              (o & 4 ? way[i][2] : -way[i][2]);
-                if (!(score > most)) continue;
-                most = score;
-                child = i;
-                octant = o;
-            }
+        for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
+            float score = (o & 1 ? w[0] : -w[0]) + (o & 2 ? w[1] : -w[1]) + (o & 4 ? w[2] : -w[2]);
+            if (taken >> o & 1 || !(score > most)) continue;
+            most = score;
+            octant = o;
         }
-        octants[child] = octant;
-        placed |= 1u << child;
+        octants[order[n]] = octant;
         taken |= 1u << octant;
     }
 }
@@ -174,7 +208,7 @@ static void write_children(writer *w, const rgi_branch *b, child children[RGI_CH
     *count = gather_children(w->making, b, branches);
     for (int leaves = 1; leaves >= 0; leaves--) {
         for (uint32_t i = 0; i < *count; i++) {
-            if (is_leaf(branches[i]) == (leaves == 1)) write_lines(w, branches[i], &children[i]);
+            if (is_leaf(w->making, branches[i]) == (leaves == 1)) write_lines(w, branches[i], &children[i]);
         }
     }
 }
@@ -183,7 +217,7 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
     const rgi_mesh *mesh = w->making->mesh;
     out->branch = b;
     out->ref = (rgi_mesh_ref)w->lines;
-    if (is_leaf(b)) {
+    if (is_leaf(w->making, b)) {
         out->ref |= RGI_MESH_LEAF;
         void *leaf = rgi_mesh_at(mesh, out->ref);
         w->lines += LEAF_LINES;

@@ -340,6 +340,17 @@ RGI_INLINE uint32_t f8_keep(uint32_t bits, const uint32_t order[8], f8 t, const 
 #endif
 }
 
+/** Four floats, twice. */
+RGI_INLINE f8 f8_twice(const float four[4]) {
+#if RGI_LANES == 8
+    return (f8){{_mm256_broadcast_ps((const __m128 *)four)}};
+#else
+    float eight[8];
+    for (int i = 0; i < 8; i++) eight[i] = four[i % 4];
+    return f8_load(eight);
+#endif
+}
+
 /** The lanes of `table` that 16 numbers below 16 name. */
 RGI_INLINE f16 f16_take(f16 table, const uint8_t numbers[16]) {
 #if RGI_ISA == RGI_ISA_AVX512

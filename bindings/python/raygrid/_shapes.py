@@ -170,9 +170,7 @@ class Mesh(Shape):
             views.triangle_count = len(triangles)
         self._create(lib.rg_shape_create_mesh, views, config=_config(quality, workers))
 
-    def deformed(
-        self, vertices: ArrayLike, *, quality: MeshQuality = MeshQuality.BEST, workers: int = 1
-    ) -> Mesh:
+    def deformed(self, vertices: ArrayLike, *, quality: MeshQuality = MeshQuality.BEST, workers: int = 1) -> Mesh:
         """A mesh of these triangles with new vertices, made much faster than a new one: (V, 3), V as before.
 
         This one stays as it is: Scene.replace_shape puts the new one in its place. quality, workers: as for Mesh, for
