@@ -8,7 +8,7 @@ pub const RG_RADIUS_MIN: f64 = 0.00000000000000000000000000000000000000000000000
 pub const RG_GRID_OF_SCENE: u32 = 0;
 pub const RG_REBUILD_NEVER: f64 = -1.0;
 pub const RG_NO_OBJECT: u64 = 0;
-pub const RG_FORMAT_VERSION: u32 = 1;
+pub const RG_FORMAT_VERSION: u32 = 2;
 pub const RG_NO_PRIMITIVE: u32 = 4294967295;
 unsafe extern "C" {
     ///The version of the library that is running, as major \* 1000000 + minor \* 1000 + patch. Any thread.
@@ -273,6 +273,10 @@ unsafe extern "C" {
 pub struct rg_shape {
     _unused: [u8; 0],
 }
+///How much is done for rays when a mesh is made.
+pub type rg_mesh_quality = i32;
+pub const RG_MESH_BEST: i32 = 0;
+pub const RG_MESH_FAST: i32 = 1;
 ///How a shape is made. NULL in place of it means all defaults.
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
@@ -280,11 +284,19 @@ pub struct rg_shape_config {
     pub size: usize,
     ///Where the shape's memory comes from; both functions NULL: malloc. Copied.
     pub allocator: rg_allocator,
+    ///Of meshes: how much time their making may take.
+    pub quality: rg_mesh_quality,
+    /**Threads that make a mesh together, the calling one among them: 0 or 1 for the calling thread alone, at most
+1024. They end before the call does. Ignored with parallel\_for.*/
+    pub workers: u32,
+    ///The host's job system in place of threads. NULL: none.
+    pub parallel_for: rg_parallel_for,
+    pub parallel_for_user: *mut ::core::ffi::c_void,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of rg_shape_config"][::core::mem::size_of::<rg_shape_config>() - 32usize];
+    ["Size of rg_shape_config"][::core::mem::size_of::<rg_shape_config>() - 56usize];
     [
         "Alignment of rg_shape_config",
     ][::core::mem::align_of::<rg_shape_config>() - 8usize];
@@ -294,6 +306,18 @@ const _: () = {
     [
         "Offset of field: rg_shape_config::allocator",
     ][::core::mem::offset_of!(rg_shape_config, allocator) - 8usize];
+    [
+        "Offset of field: rg_shape_config::quality",
+    ][::core::mem::offset_of!(rg_shape_config, quality) - 32usize];
+    [
+        "Offset of field: rg_shape_config::workers",
+    ][::core::mem::offset_of!(rg_shape_config, workers) - 36usize];
+    [
+        "Offset of field: rg_shape_config::parallel_for",
+    ][::core::mem::offset_of!(rg_shape_config, parallel_for) - 40usize];
+    [
+        "Offset of field: rg_shape_config::parallel_for_user",
+    ][::core::mem::offset_of!(rg_shape_config, parallel_for_user) - 48usize];
 };
 impl Default for rg_shape_config {
     fn default() -> Self {
@@ -397,10 +421,27 @@ Triangles without area are kept, so that primitive numbers hold, and are never h
 Hits: primitive = number of the triangle; u and v the barycentric weights of its second and third corner.
 Watertight: a ray at a shared edge or vertex of a closed mesh always hits one of the triangles that share it.
 Errors: RG\_INVALID\_ARGUMENT, RG\_INVALID\_VALUE (a vertex that is not finite or beyond RG\_COORDINATE\_MAX, an index
-without a vertex; the message names its number), RG\_LIMIT\_EXCEEDED, RG\_OUT\_OF\_MEMORY.
-Cost: O(n log n) for n triangles; about 100 bytes a triangle.*/
+without a vertex; the message names its number), RG\_LIMIT\_EXCEEDED, RG\_OUT\_OF\_MEMORY, RG\_OUT\_OF\_THREADS.
+Cost: O(n log n) for n triangles; while it is made up to 250 bytes a triangle. What it holds of a triangle: some 30
+bytes where triangles share vertices, 50 where they do not, 62 where these have indices; and 24 bytes a vertex if
+not all are floats, given in whichever type, or if the largest coordinate is beyond 2^40 or below 2^-40.*/
     pub fn rg_shape_create_mesh(
         config: *const rg_shape_config,
+        views: *const rg_mesh_views,
+        shape: *mut *mut rg_shape,
+    ) -> rg_result;
+}
+unsafe extern "C" {
+    /**A mesh of the triangles of another one with new vertices, for meshes that change their form: made much faster than
+by rg\_shape\_create\_mesh. Of `views` only the vertices are read, as many as `mesh` has: the triangles are those of
+`mesh`, which stays as it is and may be released afterwards; rg\_scene\_replace\_shape puts the new one in its place.
+What finds the triangles is taken over and fitted, unless triangles have moved so much against each other, in this
+and earlier such steps, that rays would cost half as much again: then it is made anew, as config says. No answer
+depends on which of the two. Errors: as rg\_shape\_create\_mesh; RG\_INVALID\_ARGUMENT: `mesh` is no mesh;
+RG\_INVALID\_VALUE: another number of vertices. Cost: linear.*/
+    pub fn rg_shape_create_deformed(
+        config: *const rg_shape_config,
+        mesh: *const rg_shape,
         views: *const rg_mesh_views,
         shape: *mut *mut rg_shape,
     ) -> rg_result;
@@ -1054,6 +1095,18 @@ their ids, RG\_U64. Errors: RG\_INVALID\_ARGUMENT, RG\_INVALID\_ID (the message 
         count: u64,
     ) -> rg_result;
 }
+unsafe extern "C" {
+    /**Gives every object of this scene that has the shape `from` the shape `to`: as for a mesh that has changed its form,
+see rg\_shape\_create\_deformed. Their ids, poses and masks stay. All at once, or on any error none: each ray sees all
+with the one or all with the other. Objects of other scenes keep `from`.
+Errors: RG\_INVALID\_ARGUMENT, RG\_INVALID\_VALUE (an object with `to` would reach too far; the message names it),
+RG\_OUT\_OF\_MEMORY, RG\_BUSY. Cost: looks at each object of the scene, some nanoseconds each; moves those concerned.*/
+    pub fn rg_scene_replace_shape(
+        scene: *mut rg_scene,
+        from: *mut rg_shape,
+        to: *mut rg_shape,
+    ) -> rg_result;
+}
 ///What is known of an object. Set `size` before the call; the library fills what both sides know.
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
@@ -1391,7 +1444,8 @@ is one; so does rg\_scene\_destroy.
 
 When the recording can't go on (write failed, no memory, a user-defined shape without a number), it ends; the call
 that was to be recorded succeeds all the same, what has been written is good up to there, the scene's log is told,
-and the call that ends the recording returns why. A recording holds a reference to each shape that it has written.
+and the call that ends the recording returns why. A recording holds a reference to each shape that it has written:
+of a mesh that is given new vertices again and again, to all of them.
 Errors when it begins: as rg\_scene\_save; RG\_BUSY (there is one, the scene is a frame, or from inside a callback).
 When it ends: RG\_CALLBACK\_FAILED, RG\_OUT\_OF\_MEMORY, RG\_INVALID\_ARGUMENT, if it could not be written to its end; it
 is over all the same. RG\_BUSY: from inside a callback.*/
@@ -1417,6 +1471,7 @@ pub const RG_CALL_GRID_CREATE: i32 = 9;
 pub const RG_CALL_GRID_DESTROY: i32 = 10;
 pub const RG_CALL_GRID_CONFIGURE: i32 = 11;
 pub const RG_CALL_GRID_REBUILD: i32 = 12;
+pub const RG_CALL_REPLACE_SHAPE: i32 = 13;
 unsafe extern "C" {
     ///The name of the function that makes a call, such as "rg\_scene\_insert"; "unknown" for a number that is none.
     pub fn rg_call_name(call: rg_call) -> *const ::core::ffi::c_char;
