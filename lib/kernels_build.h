@@ -85,6 +85,7 @@ RGI_INLINE f8 wrap_of_run(const rgi_making *m, const rgi_run *run) {
 
 static void wrap_items(const rgi_making *m) {
     for (uint32_t i = 0; i < m->item_count; i++) {
+        if (m->runs && i + 3 < m->item_count) rgi_run_fetch(m, &m->runs[i + 3]);
         f8_store(m->items[i].least, m->runs ? wrap_of_run(m, &m->runs[i]) : wrap_of_triangle(m, i));
         memcpy(&m->items[i].least[3], &i, sizeof i);
     }

@@ -77,6 +77,13 @@ static inline const float *rgi_corner(const rgi_making *m, uint32_t triangle, ui
     return m->at[m->in_order ? 3 * triangle + corner : m->triangles[triangle][corner]];
 }
 
+/** Asks for the vertices of a run, so that they are there when they are read. */
+static inline void rgi_run_fetch(const rgi_making *m, const rgi_run *run) {
+    for (uint32_t k = 0; k < run->count && m->mesh->soup; k++)
+        __builtin_prefetch(rgi_corner(m, m->order[run->first + k], 0));
+    for (uint32_t k = 0; k < run->vertices; k++) __builtin_prefetch(m->at[run->numbers[k]]);
+}
+
 /** RG_INVALID_VALUE if a vertex is not finite or too large; *floats: whether all are floats, of whatever type. */
 rg_result rgi_mesh_check(const rg_mesh_views *views, bool *floats);
 

@@ -103,6 +103,21 @@ static void refill_soup(const refill *r, const rgi_soup_leaf *old, rgi_soup_leaf
     }
 }
 
+/* Asks for the vertices of a leaf, so that they are there when it is filled: else each is waited for. */
+static void fetch_vertices(const refill *r, rgi_mesh_ref ref) {
+    const rgi_mesh *mesh = r->mesh;
+    const void *leaf = rgi_mesh_at(r->old, ref);
+    const uint32_t *numbers = mesh->soup ? NULL : mesh->numbers[((const rgi_mesh_leaf *)leaf)->number];
+    for (uint32_t k = 0; k < (numbers ? RGI_LEAF : RGI_SOUP_LEAF); k++) {
+        if (!numbers && rgi_mesh_primitive(mesh, leaf, k) == RGI_NO_TRIANGLE) return;
+        uint32_t vertex = numbers ? numbers[k] : rgi_mesh_vertex(mesh, leaf, k, 0);
+        if (mesh->vertices)
+            __builtin_prefetch(mesh->vertices[vertex]);
+        else
+            __builtin_prefetch(rgi_record(r->vertices->x, r->vertices->stride, vertex));
+    }
+}
+
 static void refill_below(const refill *r, rgi_mesh_ref ref, box *out);
 
 /* Boxes are without a pad at first. */
@@ -110,6 +125,9 @@ static void refill_node(const refill *r, const rgi_mesh_node *old, rgi_mesh_node
     const float most = (float)INFINITY;
     *node = *old;
     *out = (box){{most, most, most}, {-most, -most, -most}};
+    for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
+        if (is_there(node, o) && node->child[o] & RGI_MESH_LEAF) fetch_vertices(r, node->child[o]);
+    }
     for (uint32_t o = 0; o < RGI_CHILDREN; o++) {
         box child;
         if (!is_there(node, o)) continue;

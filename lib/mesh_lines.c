@@ -82,6 +82,10 @@ static void count_lines(writer *w, const rgi_branch *b) {
 
 /* ------------------------------------------------------------------------------------------------- leaves */
 
+static const rgi_run *run_of(const rgi_making *m, const rgi_branch *b) {
+    return &m->runs[rgi_item_number(&m->items[b->first])];
+}
+
 static uint8_t lane_of(rgi_mesh_leaf *leaf, uint32_t numbers[RGI_LEAF], uint32_t vertex) {
     for (uint8_t k = 0; k < leaf->vertices; k++) {
         if (numbers[k] == vertex) return k;
@@ -106,10 +110,6 @@ static void take_run(const rgi_making *m, const rgi_run *run, rgi_mesh_leaf *lea
     memcpy(leaf->primitive, m->order + run->first, run->count * sizeof *m->order);
     memcpy(leaf->corner, run->corner, sizeof leaf->corner);
     memcpy(numbers, run->numbers, sizeof run->numbers);
-}
-
-static const rgi_run *run_of(const rgi_making *m, const rgi_branch *b) {
-    return &m->runs[rgi_item_number(&m->items[b->first])];
 }
 
 static void write_leaf(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf, uint32_t number) {
@@ -206,6 +206,9 @@ static void write_lines(writer *w, const rgi_branch *b, child *out);
 static void write_children(writer *w, const rgi_branch *b, child children[RGI_CHILDREN], uint32_t *count) {
     const rgi_branch *branches[RGI_CHILDREN];
     *count = gather_children(w->making, b, branches);
+    for (uint32_t i = 0; i < *count && w->making->runs; i++) {
+        if (is_leaf(w->making, branches[i])) rgi_run_fetch(w->making, run_of(w->making, branches[i]));
+    }
     for (int leaves = 1; leaves >= 0; leaves--) {
         for (uint32_t i = 0; i < *count; i++) {
             if (is_leaf(w->making, branches[i]) == (leaves == 1)) write_lines(w, branches[i], &children[i]);
