@@ -11,6 +11,9 @@
 
 #include <string.h>
 
+/* Triangles are asked for so many before they are read. */
+enum { AHEAD = 24 };
+
 /* Cells of the curve along the longest axis, as a power of two; digits of the sort, of which so many make a place. */
 enum { CURVE_BITS = 10, DIGIT_BITS = 10, DIGITS = 1 << DIGIT_BITS, SORTS = 3 * CURVE_BITS / DIGIT_BITS };
 
@@ -103,6 +106,7 @@ static void fill_run(cutter *c, uint32_t first, rgi_run *run, uint32_t vertices[
     }
     c->base += RGI_LEAF;
     for (uint32_t i = 0; i < run->count; i++) {
+        if (left > i + AHEAD) __builtin_prefetch(m->triangles[m->order[first + i + AHEAD]]);
         const uint32_t *t = m->triangles[m->order[first + i]];
         for (int k = 0; k < 3; k++) {
             uint32_t lane = c->stamps[t[k]] - c->base;
