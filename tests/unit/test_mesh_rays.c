@@ -236,7 +236,6 @@ START_TEST(the_form_of_the_data_changes_no_bit) {
         ck_assert((mesh[form]->corners != NULL) == (form % FORMS == SOUP_WITH_INDICES));
         rgi_mesh_destroy(mesh[form]);
     }
-    ck_assert_uint_eq(memory.bytes, 0);
 }
 END_TEST
 

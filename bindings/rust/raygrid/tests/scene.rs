@@ -6,8 +6,8 @@ use std::error::Error as _;
 
 use raygrid::views::{Floats, FloatsMut, HitViews, Ids, Poses, RayViews, Vectors, VectorsMut};
 use raygrid::{
-    Cull, ErrorKind, GridConfig, GridId, GridKind, Hit, Insert, MeshQuality, ObjectId, Pose, Ray, Result, Scene, Shape,
-    Without,
+    Cull, ErrorKind, GridConfig, GridId, GridKind, Hit, Insert, MeshQuality, ObjectId, Pose, Ray, Result, Scene,
+    Shape, Without,
 };
 
 const ALONG_Z: [f64; 3] = [0.0, 0.0, 1.0];
@@ -257,7 +257,8 @@ fn culling_and_shapes() -> Result<()> {
 #[test]
 fn a_mesh_that_changes_its_form() -> Result<()> {
     let corners: Vec<[f64; 3]> = (0..300).map(|i| [0.1, 0.7, 1.3].map(|f| (f * f64::from(i)).sin())).collect();
-    let rays: Vec<Ray> = corners.iter().map(|c| Ray::new([3.0, c[0], 2.0 * c[1]], [c[1] - 3.0, c[2], c[0]])).collect();
+    let rays: Vec<Ray> =
+        corners.iter().map(|c| Ray::new([3.0, c[0], 2.0 * c[1]], [c[1] - 3.0, c[2], c[0]])).collect();
     let hits = |scene: &Scene| -> Result<Vec<f64>> {
         let mut hits = vec![Hit::MISS; rays.len()];
         scene.trace_many(&rays, &mut hits)?;
