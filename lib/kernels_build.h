@@ -60,6 +60,50 @@ static void find_split(const rgi_wrap *items, uint32_t count, const rgi_wrap *ce
     }
 }
 
+/* Without branches on the sides, which can't be foreseen. */
+static uint32_t part_items(rgi_item *items, rgi_item *spare, uint32_t count, const rgi_wrap *centres,
+                           const float scales[3], const rgi_cut *cut, rgi_wrap *left, rgi_wrap *right) {
+    const float lo = centres->least[cut->axis], scale = scales[cut->axis];
+    const f8 none = f8_set(INFINITY);
+    f8 of_left = none, of_right = none;
+    uint32_t lefts = 0, rights = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        f8 item = f8_load(items[i].least), centre = f8_sub(item, f8_turned(item));
+        float c = items[i].least[cut->axis] - items[i].least[cut->axis + 4];
+        uint32_t to_right = rgi_bin_of(c, lo, scale) >= cut->bin;
+        f8_store(items[lefts].least, item);
+        f8_store(spare[rights].least, item);
+        of_left = f8_min(of_left, f8_pick(to_right - 1, centre, none));
+        of_right = f8_min(of_right, f8_pick(0 - to_right, centre, none));
+        rights += to_right;
+        lefts += 1 - to_right;
+    }
+    memcpy(items + lefts, spare, rights * sizeof *spare);
+    f8_store(left->least, of_left);
+    f8_store(right->least, of_right);
+    return lefts;
+}
+
+/* --------------------------------------------------------------------------------------------- connected leaves */
+
+static uint32_t number_corners(const rgi_making *m, const rgi_item *items, uint32_t count, uint32_t numbers[RGI_LEAF],
+                               uint8_t corner[3][RGI_LEAF]) {
+    uint32_t vertices = 0;
+    for (int k = 0; k < RGI_LEAF; k++) numbers[k] = UINT32_MAX; /* no vertex has that number */
+    for (uint32_t t = 0; t < count; t++) {
+        const uint32_t *corners = m->triangles[rgi_item_number(&items[t])];
+        for (int c = 0; c < 3; c++) {
+            uint32_t known = 0;
+            for (uint32_t k = 0; k < RGI_LEAF; k++) known |= (uint32_t)(numbers[k] == corners[c]) << k;
+            if (!known && vertices == RGI_LEAF) return RGI_LEAF + 1;
+            uint32_t lane = known ? (uint32_t)__builtin_ctz(known) : vertices++;
+            numbers[lane] = corners[c];
+            corner[c][t] = (uint8_t)lane;
+        }
+    }
+    return vertices;
+}
+
 /* ------------------------------------------------------------------------------------------------- items */
 
 /* Of a point. */

@@ -90,6 +90,7 @@ static rg_result fill(rgi_mesh *mesh, const rg_mesh_views *views, const rgi_mesh
     rgi_pool_destroy(making.pool);
     rgi_release(memory, making.branches, 2 * (uint64_t)making.item_count, sizeof *making.branches);
     rgi_release(memory, making.items, making.item_count, sizeof *making.items);
+    rgi_release(memory, making.spare, making.item_count, sizeof *making.spare);
     rgi_runs_free(&making);
     rgi_release(memory, making.at, mesh->vertex_count, sizeof *making.at);
     rgi_release(memory, making.triangles, mesh->triangle_count, sizeof *making.triangles);

@@ -53,45 +53,17 @@ static void bin_scales(const rgi_wrap *centres, uint32_t bins, float scales[3]) 
     }
 }
 
-/* Brings the items of the left side to the front; returns how many. */
-static uint32_t part_items(rgi_item *items, uint32_t count, const rgi_wrap *centres, const float scales[3],
-                           const rgi_cut *s, rgi_wrap *left, rgi_wrap *right) {
-    const float lo = centres->least[s->axis], scale = scales[s->axis];
-    uint32_t i = 0, j = count;
-    while (i < j) {
-        if (rgi_bin_of(centre(&items[i], s->axis), lo, scale) < s->bin) {
-            grow_centres(left, &items[i++]);
-            continue;
-        }
-        grow_centres(right, &items[i]);
-        rgi_item swap = items[i];
-        items[i] = items[--j];
-        items[j] = swap;
-    }
-    return i;
-}
-
 /* ------------------------------------------------------------------------------------------------- the costs */
 
 /* Whether the triangles of some items have no more vertices than a leaf holds. */
 static bool leaf_holds(const rgi_making *m, uint32_t first, uint32_t count) {
-    uint32_t seen[RGI_LEAF], vertices = 0;
+    uint32_t numbers[RGI_LEAF];
+    uint8_t corner[3][RGI_LEAF];
     if (m->fast) return count == 1;
     if (m->mesh->soup) return count <= RGI_SOUP_LEAF;
     if (count > RGI_LEAF) return false;
     if (3 * count <= RGI_LEAF) return true;
-    memset(seen, 0xFF, sizeof seen); /* no vertex has that number */
-    for (uint32_t i = first; i < first + count; i++) {
-        const uint32_t *triangle = m->triangles[rgi_item_number(&m->items[i])];
-        for (int c = 0; c < 3; c++) {
-            uint32_t v = triangle[c], known = 0;
-            for (int k = 0; k < RGI_LEAF; k++) known |= seen[k] == v;
-            if (known) continue;
-            if (vertices == RGI_LEAF) return false;
-            seen[vertices++] = v;
-        }
-    }
-    return true;
+    return m->mesh->kernels->number_corners(m, m->items + first, count, numbers, corner) <= RGI_LEAF;
 }
 
 /* The least cost of two subtrees in `places` places together. */
@@ -205,13 +177,15 @@ static uint32_t part_items_of(const rgi_making *m, const part *p, rgi_wrap *left
     rgi_cut cut = {-1, 0, 0};
     float scales[3];
     bin_scales(&p->centres, bins, scales);
-    rgi_wrap_empty(left);
-    rgi_wrap_empty(right);
     if (!few && p->depth < MOST_DEPTH)
         m->mesh->kernels->find_split(items, p->count, &p->centres, scales, bins, fill, &cut);
-    if (cut.axis >= 0) return part_items(items, p->count, &p->centres, scales, &cut, left, right);
+    if (cut.axis >= 0)
+        return m->mesh->kernels->part_items(items, m->spare + p->first, p->count, &p->centres, scales, &cut, left,
+                                            right);
     count = !few ? p->count / 2 : m->fast ? part_in_half(items, p->count, &p->centres)
                                           : part_by_number(items, p->count, fill);
+    rgi_wrap_empty(left);
+    rgi_wrap_empty(right);
     for (uint32_t i = 0; i < p->count; i++) grow_centres(i < count ? left : right, &items[i]);
     return count;
 }
@@ -288,6 +262,7 @@ rg_result rgi_branches_make(rgi_making *m) {
     part all = {0, m->item_count, 0, {{0}}};
     rg_result result = rgi_allocate(m->mesh->memory, 2 * (uint64_t)m->item_count, sizeof *m->branches,
                                     "building a mesh", &m->branches);
+    if (!result) result = rgi_allocate(m->mesh->memory, m->item_count, sizeof *m->spare, "building a mesh", &m->spare);
     if (result) return result;
     rgi_wrap_empty(&all.centres);
     for (uint32_t i = 0; i < all.count; i++) grow_centres(&all.centres, &m->items[i]);

@@ -61,6 +61,7 @@ typedef struct rgi_making {
     bool in_order;            /* of a soup: triangle i has the vertices 3i to 3i+2 */
     float (*at)[4];           /* vertices in the frame, and a 0 */
     rgi_item *items;
+    rgi_item *spare; /* room for as many */
     uint32_t item_count;
     rgi_branch *branches; /* room for 2 an item: what is not used is never touched */
     uint32_t used;        /* atomic: branches */

@@ -86,21 +86,11 @@ static const rgi_run *run_of(const rgi_making *m, const rgi_branch *b) {
     return &m->runs[rgi_item_number(&m->items[b->first])];
 }
 
-static uint8_t lane_of(rgi_mesh_leaf *leaf, uint32_t numbers[RGI_LEAF], uint32_t vertex) {
-    for (uint8_t k = 0; k < leaf->vertices; k++) {
-        if (numbers[k] == vertex) return k;
-    }
-    numbers[leaf->vertices] = vertex;
-    return (uint8_t)leaf->vertices++;
-}
-
 static void list_triangles(const rgi_making *m, const rgi_branch *b, rgi_mesh_leaf *leaf, uint32_t *numbers) {
+    const rgi_item *items = m->items + b->first;
     leaf->triangles = (uint16_t)b->count;
-    for (uint32_t t = 0; t < b->count; t++) {
-        leaf->primitive[t] = rgi_item_number(&m->items[b->first + t]);
-        const uint32_t *corners = m->triangles[leaf->primitive[t]];
-        for (int c = 0; c < 3; c++) leaf->corner[c][t] = lane_of(leaf, numbers, corners[c]);
-    }
+    for (uint32_t t = 0; t < b->count; t++) leaf->primitive[t] = rgi_item_number(&items[t]);
+    leaf->vertices = (uint16_t)m->mesh->kernels->number_corners(m, items, b->count, numbers, leaf->corner);
     for (uint32_t k = leaf->vertices; k < RGI_LEAF; k++) numbers[k] = numbers[0];
 }
 

@@ -340,6 +340,17 @@ RGI_INLINE uint32_t f8_keep(uint32_t bits, const uint32_t order[8], f8 t, const 
 #endif
 }
 
+/** The halves the other way round. */
+RGI_INLINE f8 f8_turned(f8 a) {
+#if RGI_LANES == 8
+    return (f8){{_mm256_permute2f128_ps(a.v[0], a.v[0], 1)}};
+#else
+    f8 r;
+    for (int i = 0; i < 8 / RGI_LANES; i++) r.v[i] = a.v[(i + 4 / RGI_LANES) % (8 / RGI_LANES)];
+    return r;
+#endif
+}
+
 /** Four floats, twice. */
 RGI_INLINE f8 f8_twice(const float four[4]) {
 #if RGI_LANES == 8
