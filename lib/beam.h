@@ -205,10 +205,6 @@ struct rgi_kernels {
     uint32_t (*part_items)(struct rgi_wrap *items, struct rgi_wrap *spare, uint32_t count,
                            const struct rgi_wrap *centres, const float scales[3], const struct rgi_cut *cut,
                            struct rgi_wrap *left, struct rgi_wrap *right);
-    /** Numbers the vertices of the triangles of items from 0 on, in the order in which they come, and says which are
-     * whose corners. Returns their number, with numbers[] of those; more than a leaf holds: it may not be all. */
-    uint32_t (*number_corners)(const struct rgi_making *making, const struct rgi_wrap *items, uint32_t count,
-                               uint32_t numbers[16], uint8_t corner[3][16]);
     /** Makes items of triangles, or of runs of them. */
     void (*wrap_items)(const struct rgi_making *making);
     /** The box of a leaf whose vertices are new, without a pad; sets what follows from them. */

@@ -84,26 +84,6 @@ static uint32_t part_items(rgi_item *items, rgi_item *spare, uint32_t count, con
     return lefts;
 }
 
-/* --------------------------------------------------------------------------------------------- connected leaves */
-
-static uint32_t number_corners(const rgi_making *m, const rgi_item *items, uint32_t count, uint32_t numbers[RGI_LEAF],
-                               uint8_t corner[3][RGI_LEAF]) {
-    uint32_t vertices = 0;
-    for (int k = 0; k < RGI_LEAF; k++) numbers[k] = UINT32_MAX; /* no vertex has that number */
-    for (uint32_t t = 0; t < count; t++) {
-        const uint32_t *corners = m->triangles[rgi_item_number(&items[t])];
-        for (int c = 0; c < 3; c++) {
-            uint32_t known = 0;
-            for (uint32_t k = 0; k < RGI_LEAF; k++) known |= (uint32_t)(numbers[k] == corners[c]) << k;
-            if (!known && vertices == RGI_LEAF) return RGI_LEAF + 1;
-            uint32_t lane = known ? (uint32_t)__builtin_ctz(known) : vertices++;
-            numbers[lane] = corners[c];
-            corner[c][t] = (uint8_t)lane;
-        }
-    }
-    return vertices;
-}
-
 /* ------------------------------------------------------------------------------------------------- items */
 
 /* Of a point. */

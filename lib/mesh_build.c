@@ -63,7 +63,7 @@ static bool leaf_holds(const rgi_making *m, uint32_t first, uint32_t count) {
     if (m->mesh->soup) return count <= RGI_SOUP_LEAF;
     if (count > RGI_LEAF) return false;
     if (3 * count <= RGI_LEAF) return true;
-    return m->mesh->kernels->number_corners(m, m->items + first, count, numbers, corner) <= RGI_LEAF;
+    return rgi_corners_number(m, m->items + first, count, numbers, corner) <= RGI_LEAF;
 }
 
 /* The least cost of two subtrees in `places` places together. */

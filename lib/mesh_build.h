@@ -97,6 +97,13 @@ rg_result rgi_triangles_copy(rgi_making *making, const rg_mesh_views *views, con
 /** The vertices, into the frame and the mesh. */
 void rgi_vertices_copy(rgi_making *making, const rg_mesh_views *views);
 
+/**
+ * Numbers the vertices of the triangles of items from 0 on, in the order in which they come, and says which are whose
+ * corners. Returns their number, numbers[] being theirs; more than a leaf holds: it has been ended there.
+ */
+uint32_t rgi_corners_number(const rgi_making *making, const rgi_item *items, uint32_t count,
+                            uint32_t numbers[RGI_LEAF], uint8_t corner[3][RGI_LEAF]);
+
 /** Sets origin, scale, pads and middle of the frame for the box of the mesh. */
 void rgi_mesh_set_frame(rgi_mesh *mesh);
 

@@ -82,6 +82,28 @@ static void count_lines(writer *w, const rgi_branch *b) {
 
 /* ------------------------------------------------------------------------------------------------- leaves */
 
+/* Known vertices are found by a table with open addressing, an eighth of which is used at the most. */
+uint32_t rgi_corners_number(const rgi_making *m, const rgi_item *items, uint32_t count, uint32_t numbers[RGI_LEAF],
+                            uint8_t corner[3][RGI_LEAF]) {
+    enum { PLACES = 8 * RGI_LEAF };
+    uint8_t lanes[PLACES] = {0}; /* and one */
+    uint32_t vertices = 0;
+    for (uint32_t t = 0; t < count; t++) {
+        const uint32_t *corners = m->triangles[rgi_item_number(&items[t])];
+        for (int c = 0; c < 3; c++) {
+            uint32_t at = corners[c] * UINT32_C(0x9E3779B9) >> 25;
+            while (lanes[at] && numbers[lanes[at] - 1] != corners[c]) at = (at + 1) % PLACES;
+            if (!lanes[at]) {
+                if (vertices == RGI_LEAF) return RGI_LEAF + 1;
+                numbers[vertices] = corners[c];
+                lanes[at] = (uint8_t)++vertices;
+            }
+            corner[c][t] = (uint8_t)(lanes[at] - 1);
+        }
+    }
+    return vertices;
+}
+
 static const rgi_run *run_of(const rgi_making *m, const rgi_branch *b) {
     return &m->runs[rgi_item_number(&m->items[b->first])];
 }
@@ -90,7 +112,7 @@ static void list_triangles(const rgi_making *m, const rgi_branch *b, rgi_mesh_le
     const rgi_item *items = m->items + b->first;
     leaf->triangles = (uint16_t)b->count;
     for (uint32_t t = 0; t < b->count; t++) leaf->primitive[t] = rgi_item_number(&items[t]);
-    leaf->vertices = (uint16_t)m->mesh->kernels->number_corners(m, items, b->count, numbers, leaf->corner);
+    leaf->vertices = (uint16_t)rgi_corners_number(m, items, b->count, numbers, leaf->corner);
     for (uint32_t k = leaf->vertices; k < RGI_LEAF; k++) numbers[k] = numbers[0];
 }
 
