@@ -205,6 +205,9 @@ struct rgi_kernels {
     uint32_t (*part_items)(struct rgi_wrap *items, struct rgi_wrap *spare, uint32_t count,
                            const struct rgi_wrap *centres, const float scales[3], const struct rgi_cut *cut,
                            struct rgi_wrap *left, struct rgi_wrap *right);
+    /** Brings `left` of at most RGI_FEW_ITEMS items to the front: those with the least centres along the axis where
+     * that costs least. */
+    void (*part_few)(struct rgi_wrap *items, struct rgi_wrap *spare, uint32_t count, uint32_t left);
     /** Makes items of triangles, or of runs of them. */
     void (*wrap_items)(const struct rgi_making *making);
     /** The box of a leaf whose vertices are new, without a pad; sets what follows from them. */

@@ -334,9 +334,10 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 #define measure_leaf NULL
 #define wrap_items NULL
 #define part_items NULL
+#define part_few NULL
 #endif
 
 const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
-    RGI_TEXT(RGI_NAME), RGI_ISA,       unite_block,  prepare,  to_frame,   bound,       meet,       trace_one,
-    trace_some,         trace_frustum, trace_frusta, mesh_one, mesh_enter, mesh_packet, find_split, part_items,
-    wrap_items,         measure_leaf};
+    RGI_TEXT(RGI_NAME), RGI_ISA,    unite_block,   prepare,      to_frame,    bound,      meet,
+    trace_one,          trace_some, trace_frustum, trace_frusta, mesh_one,    mesh_enter, mesh_packet,
+    find_split,         part_items, part_few,      wrap_items,   measure_leaf};

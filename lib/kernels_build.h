@@ -84,6 +84,62 @@ static uint32_t part_items(rgi_item *items, rgi_item *spare, uint32_t count, con
     return lefts;
 }
 
+/* The right side when `left` items with the least centres along an axis go to the left, as bits: by the rank of each,
+ * among equals by where it is. */
+RGI_INLINE uint64_t right_by_rank(const float centres[RGI_FEW_ITEMS], uint32_t count, uint32_t left) {
+    uint64_t right = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        f16 centre = f16_set(centres[i]);
+        uint64_t not_above = 0, not_below = 0;
+        for (uint32_t k = 0; k < count; k += 16) {
+            f16 others = f16_load(centres + k);
+            not_above |= (uint64_t)f16_le(others, centre) << k;
+            not_below |= (uint64_t)f16_le(centre, others) << k;
+        }
+        uint64_t before = (not_above & ~not_below) | (not_above & not_below & ((UINT64_C(1) << i) - 1));
+        right |= (uint64_t)((uint32_t)__builtin_popcountll(before) >= left) << i;
+    }
+    return right;
+}
+
+static float cost_of_sides(const rgi_item *items, uint32_t count, uint64_t right, uint32_t left) {
+    const f8 none = f8_set(INFINITY);
+    f8 boxes[2] = {none, none};
+    rgi_wrap w[2];
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t to_right = right >> i & 1;
+        f8 item = f8_load(items[i].least);
+        boxes[0] = f8_min(boxes[0], f8_pick(to_right - 1, item, none));
+        boxes[1] = f8_min(boxes[1], f8_pick(0 - to_right, item, none));
+    }
+    for (int s = 0; s < 2; s++) f8_store(w[s].least, boxes[s]);
+    return rgi_wrap_half_area(&w[0]) * (float)left + rgi_wrap_half_area(&w[1]) * (float)(count - left);
+}
+
+static void part_few(rgi_item *items, rgi_item *spare, uint32_t count, uint32_t left) {
+    float centres[RGI_FEW_ITEMS] __attribute__((aligned(64))), least = (float)INFINITY;
+    uint32_t lefts = 0, rights = 0;
+    uint64_t best = ~UINT64_C(0) << left;
+    for (int a = 0; a < 3; a++) {
+        for (uint32_t i = 0; i < RGI_FEW_ITEMS; i++)
+            centres[i] = i < count ? items[i].least[a] - items[i].least[a + 4] : (float)INFINITY;
+        uint64_t right = right_by_rank(centres, count, left);
+        float cost = cost_of_sides(items, count, right, left);
+        if (!(cost < least)) continue;
+        least = cost;
+        best = right;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        f8 item = f8_load(items[i].least);
+        uint32_t to_right = best >> i & 1;
+        f8_store(items[lefts].least, item);
+        f8_store(spare[rights].least, item);
+        rights += to_right;
+        lefts += 1 - to_right;
+    }
+    memcpy(items + lefts, spare, rights * sizeof *spare);
+}
+
 /* ------------------------------------------------------------------------------------------------- items */
 
 /* Of a point. */

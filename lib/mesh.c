@@ -58,8 +58,8 @@ static rg_result make(rgi_making *m, const rg_mesh_views *views, const rgi_mesh 
     bool floats;
     rg_result result = rgi_mesh_check(views, &floats);
     if (!result)
-        result = rgi_allocate(mesh->memory, mesh->triangle_count, sizeof *m->triangles, "building a mesh",
-                              &m->triangles);
+        result =
+            rgi_allocate(mesh->memory, mesh->triangle_count, sizeof *m->triangles, "building a mesh", &m->triangles);
     mesh->soup = mesh->vertex_count > mesh->triangle_count;
     m->fill = mesh->soup ? RGI_SOUP_LEAF : CONNECTED_FILL;
     if (!result) result = rgi_triangles_copy(m, views, like);

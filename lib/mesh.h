@@ -58,15 +58,15 @@ typedef struct rgi_mesh {
     uint32_t line_count;
     rgi_mesh_ref root;
     uint32_t triangle_count, vertex_count;
-    bool soup;                      /* leaves are rgi_soup_leaf */
-    double (*vertices)[3];          /* in double; NULL where the frame's are exact */
-    uint32_t (*numbers)[RGI_LEAF];  /* of the vertices of each leaf; of a soup NULL */
-    uint32_t leaf_count;            /* of a soup 0 */
-    uint32_t (*corners)[3];         /* of each triangle of a soup; NULL if triangle i has the vertices 3i to 3i+2 */
-    double lo[3], hi[3];     /* of the triangles: vertices that none uses do not count */
-    double origin[3], scale; /* of the frame; a power of two */
-    float pad;               /* around boxes, in the frame */
-    float rounding;          /* what tests in double may be wrong by, in the frame */
+    bool soup;                     /* leaves are rgi_soup_leaf */
+    double (*vertices)[3];         /* in double; NULL where the frame's are exact */
+    uint32_t (*numbers)[RGI_LEAF]; /* of the vertices of each leaf; of a soup NULL */
+    uint32_t leaf_count;           /* of a soup 0 */
+    uint32_t (*corners)[3];        /* of each triangle of a soup; NULL if triangle i has the vertices 3i to 3i+2 */
+    double lo[3], hi[3];           /* of the triangles: vertices that none uses do not count */
+    double origin[3], scale;       /* of the frame; a power of two */
+    float pad;                     /* around boxes, in the frame */
+    float rounding;                /* what tests in double may be wrong by, in the frame */
     rgi_middle middle;
     double cost; /* of rays in the tree as it was built: see rgi_mesh_fit */
 } rgi_mesh;
@@ -100,9 +100,9 @@ typedef struct rgi_mesh_making {
 } rgi_mesh_making;
 
 /**
- * Copies the triangles of views of checked types and builds the tree; how NULL: as well as can be, alone. `like` NULL;
- * or a mesh whose triangles are taken in place of those of the views, of which then only the vertices are read. On
- * failure all is given back.
+ * Copies the triangles of views of checked types and builds the tree; how NULL: as well as can be, alone. `like`
+ * NULL; or a mesh whose triangles are taken in place of those of the views, of which then only the vertices are read.
+ * On failure all is given back.
  */
 rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, const rgi_mesh_making *how,
                           const rgi_mesh *like, rgi_mesh **mesh);

@@ -127,13 +127,6 @@ static void select_items(rgi_item *items, uint32_t count, int axis, uint32_t fir
     }
 }
 
-static float half_area_of(const rgi_item *items, uint32_t count) {
-    rgi_wrap w;
-    rgi_wrap_empty(&w);
-    for (uint32_t i = 0; i < count; i++) rgi_wrap_grow(&w, &items[i]);
-    return rgi_wrap_half_area(&w);
-}
-
 /* The axis along which the centres are farthest apart. */
 static int widest_axis(const rgi_wrap *centres) {
     int widest = 0;
@@ -144,21 +137,11 @@ static int widest_axis(const rgi_wrap *centres) {
     return widest;
 }
 
-/* Parts items by number along the best axis: whole leaves to the left, near the middle. Returns how many that are. */
-static uint32_t part_by_number(rgi_item *items, uint32_t count, uint32_t fill) {
-    uint32_t leaves = (count + fill - 1) / fill, left = leaves / 2 * fill;
-    float least = (float)INFINITY;
-    int best = 2;
-    if (left == 0 || left >= count) left = count / 2;
-    for (int a = 0; a < 3; a++) {
-        select_items(items, count, a, left);
-        float area = half_area_of(items, left) * (float)left +
-                     half_area_of(items + left, count - left) * (float)(count - left);
-        if (!(area < least)) continue;
-        least = area;
-        best = a;
-    }
-    if (best != 2) select_items(items, count, best, left);
+/* Few items: whole leaves to the left, near the middle. Returns how many that are. */
+static uint32_t part_by_number(const rgi_making *m, const part *p) {
+    uint32_t leaves = (p->count + m->fill - 1) / m->fill, left = leaves / 2 * m->fill;
+    if (left == 0 || left >= p->count) left = p->count / 2;
+    m->mesh->kernels->part_few(m->items + p->first, m->spare + p->first, p->count, left);
     return left;
 }
 
@@ -182,8 +165,7 @@ static uint32_t part_items_of(const rgi_making *m, const part *p, rgi_wrap *left
     if (cut.axis >= 0)
         return m->mesh->kernels->part_items(items, m->spare + p->first, p->count, &p->centres, scales, &cut, left,
                                             right);
-    count = !few ? p->count / 2 : m->fast ? part_in_half(items, p->count, &p->centres)
-                                          : part_by_number(items, p->count, fill);
+    count = !few ? p->count / 2 : m->fast ? part_in_half(items, p->count, &p->centres) : part_by_number(m, p);
     rgi_wrap_empty(left);
     rgi_wrap_empty(right);
     for (uint32_t i = 0; i < p->count; i++) grow_centres(i < count ? left : right, &items[i]);
@@ -262,7 +244,8 @@ rg_result rgi_branches_make(rgi_making *m) {
     part all = {0, m->item_count, 0, {{0}}};
     rg_result result = rgi_allocate(m->mesh->memory, 2 * (uint64_t)m->item_count, sizeof *m->branches,
                                     "building a mesh", &m->branches);
-    if (!result) result = rgi_allocate(m->mesh->memory, m->item_count, sizeof *m->spare, "building a mesh", &m->spare);
+    if (!result)
+        result = rgi_allocate(m->mesh->memory, m->item_count, sizeof *m->spare, "building a mesh", &m->spare);
     if (result) return result;
     rgi_wrap_empty(&all.centres);
     for (uint32_t i = 0; i < all.count; i++) grow_centres(&all.centres, &m->items[i]);

@@ -34,7 +34,7 @@ typedef struct rgi_branch {
     uint8_t opened;
 } rgi_branch;
 
-enum { RGI_BINS = 16 };
+enum { RGI_BINS = 16, RGI_FEW_ITEMS = 64 };
 
 /** Where items are parted. */
 typedef struct rgi_cut {

@@ -217,8 +217,7 @@ static rg_result copy_mesh(rgi_memory *memory, const rgi_mesh *old, rgi_mesh **o
     if (!result && old->vertices)
         result =
             rgi_allocate(memory, mesh->vertex_count, sizeof *mesh->vertices, "a mesh's vertices", &mesh->vertices);
-    if (!result)
-        result = copy_array(memory, old->numbers, mesh->leaf_count, sizeof *mesh->numbers, &mesh->numbers);
+    if (!result) result = copy_array(memory, old->numbers, mesh->leaf_count, sizeof *mesh->numbers, &mesh->numbers);
     if (!result)
         result = copy_array(memory, old->corners, mesh->triangle_count, sizeof *mesh->corners, &mesh->corners);
     return result;

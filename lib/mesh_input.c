@@ -17,8 +17,8 @@
 
 /* ------------------------------------------------------------------------------------------------ vertices */
 
-/* Whether a double is a float: whose mantissa ends in zeros, and which is no smaller than a float can be. By its bits,
- * because gcc 12 drops pairs of casts. */
+/* Whether a double is a float: whose mantissa ends in zeros, and which is no smaller than a float can be. By its
+ * bits, because gcc 12 drops pairs of casts. */
 static bool is_float(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);

@@ -93,7 +93,8 @@ typedef struct cutter {
     uint32_t base;
 } cutter;
 
-/* Begins a run with as many triangles from `first` on as a leaf holds; vertices[i]: that those up to the i-th have. */
+/* Begins a run with as many triangles from `first` on as a leaf holds; vertices[i]: that those up to the i-th have.
+ */
 static void fill_run(cutter *c, uint32_t first, rgi_run *run, uint32_t vertices[RGI_LEAF]) {
     const rgi_making *m = c->m;
     uint32_t left = m->mesh->triangle_count - first, lanes = 0;

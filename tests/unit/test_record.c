@@ -67,9 +67,9 @@ END_TEST
 
 /* Each kind of call in its turn, with what is known of it. */
 START_TEST(steps_tell_what_they_were) {
-    static const rg_call CALLS[] = {RG_CALL_MOVE,         RG_CALL_MOVE_TO,     RG_CALL_SET_MASK,
-                                    RG_CALL_INSERT,       RG_CALL_INSERT_MANY, RG_CALL_MOVE_MANY,
-                                    RG_CALL_REMOVE_MANY,  RG_CALL_GRID_CREATE, RG_CALL_GRID_CONFIGURE,
+    static const rg_call CALLS[] = {RG_CALL_MOVE,         RG_CALL_MOVE_TO,      RG_CALL_SET_MASK,
+                                    RG_CALL_INSERT,       RG_CALL_INSERT_MANY,  RG_CALL_MOVE_MANY,
+                                    RG_CALL_REMOVE_MANY,  RG_CALL_GRID_CREATE,  RG_CALL_GRID_CONFIGURE,
                                     RG_CALL_GRID_REBUILD, RG_CALL_GRID_DESTROY, RG_CALL_REPLACE_SHAPE};
     saved_scene s;
     byte_sink bytes = {0};
