@@ -106,7 +106,7 @@ typedef struct rg_mesh_views {
  * Watertight: a ray at a shared edge or vertex of a closed mesh always hits one of the triangles that share it.
  * Errors: RG_INVALID_ARGUMENT, RG_INVALID_VALUE (a vertex that is not finite or beyond RG_COORDINATE_MAX, an index
  * without a vertex; the message names its number), RG_LIMIT_EXCEEDED, RG_OUT_OF_MEMORY, RG_OUT_OF_THREADS.
- * Cost: O(n log n) for n triangles; while it is made up to 250 bytes a triangle. What it holds of a triangle: some 30
+ * Cost: O(n log n) for n triangles; while it is made up to 350 bytes a triangle. What it holds of a triangle: some 30
  * bytes where triangles share vertices, 50 where they do not, 62 where these have indices; and 24 bytes a vertex if
  * not all are floats, given in whichever type, or if the largest coordinate is beyond 2^40 or below 2^-40.
  */

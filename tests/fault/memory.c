@@ -14,9 +14,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MANY = 200, OBJECTS = 1024, PROBES = 24, SHAPES = 6, INSERTED = 5, SIDE = 12 };
+enum { MANY = 200, OBJECTS = 1024, PROBES = 24, SHAPES = 7, INSERTED = 5, SIDE = 12 };
 
-enum { BALL, CUBE, PILL, SOLID, OWN, BENT };
+enum { BALL, CUBE, PILL, SOLID, OWN, BENT, HASTY };
 
 typedef struct scenario {
     test_allocator memory;
@@ -113,6 +113,9 @@ static rg_result make_shape(scenario *s, uint32_t which) {
         return make_mesh(&config, NULL, 0.1f, &s->shapes[SOLID]);
     case BENT:
         return make_mesh(&config, s->shapes[SOLID], 0.3f, &s->shapes[BENT]);
+    case HASTY:
+        config.quality = RG_MESH_FAST;
+        return make_mesh(&config, NULL, 0.2f, &s->shapes[HASTY]);
     default:
         return rg_shape_create_user(&config, &own, &s->shapes[OWN]);
     }
@@ -270,6 +273,7 @@ static const step STEPS[] = {
     {"mesh", make_shape, SOLID, 1, false},
     {"user shape", make_shape, OWN, 1, false},
     {"new vertices", make_shape, BENT, 1, false},
+    {"mesh in a hurry", make_shape, HASTY, 1, false},
     {"insert", insert_one, 5, 40, false},
     {"grid", make_grid, 0, 1, false},
     {"grid", make_grid, 1, 1, false},
@@ -278,6 +282,7 @@ static const step STEPS[] = {
     {"move", move_one, 30, 10, false},
     {"move_to", move_to, 1000, 10, false},
     {"replace a mesh", replace_shape, 10 * SOLID + BENT, 1, false},
+    {"replace it again", replace_shape, 10 * BENT + HASTY, 1, false},
     {"replace balls", replace_shape, 10 * BALL + CUBE, 1, false},
     {"set_mask", set_mask, 5, 1, false},
     {"move many", move_many, 500, 1, false},
@@ -292,7 +297,7 @@ static const step STEPS[] = {
     {"crowd", crowd_one, 0, 60, true},
     {"out of all cells", move_out, 0, 12, false},
     {"replace also what has no cell", replace_shape, 10 * CUBE + BALL, 1, false},
-    {"replace also what has no cell", replace_shape, 10 * BENT + PILL, 1, false},
+    {"replace also what has no cell", replace_shape, 10 * HASTY + PILL, 1, false},
     {"and back", move_to, 20, 12, false},
     {"insert far away", insert_one, 100000, 10, false},
     {"move many", move_many, 50, 1, false},

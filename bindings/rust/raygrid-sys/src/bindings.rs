@@ -422,7 +422,7 @@ Hits: primitive = number of the triangle; u and v the barycentric weights of its
 Watertight: a ray at a shared edge or vertex of a closed mesh always hits one of the triangles that share it.
 Errors: RG\_INVALID\_ARGUMENT, RG\_INVALID\_VALUE (a vertex that is not finite or beyond RG\_COORDINATE\_MAX, an index
 without a vertex; the message names its number), RG\_LIMIT\_EXCEEDED, RG\_OUT\_OF\_MEMORY, RG\_OUT\_OF\_THREADS.
-Cost: O(n log n) for n triangles; while it is made up to 250 bytes a triangle. What it holds of a triangle: some 30
+Cost: O(n log n) for n triangles; while it is made up to 350 bytes a triangle. What it holds of a triangle: some 30
 bytes where triangles share vertices, 50 where they do not, 62 where these have indices; and 24 bytes a vertex if
 not all are floats, given in whichever type, or if the largest coordinate is beyond 2^40 or below 2^-40.*/
     pub fn rg_shape_create_mesh(
