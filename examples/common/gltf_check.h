@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* gltf_check.h: whether a text is glTF 2 that the demo can read, and every property that matters has its type. */
+/* gltf_check.h: whether a text is glTF 2 that can be read here, and every property that matters has its type. */
 #ifndef DEMO_GLTF_CHECK_H
 #define DEMO_GLTF_CHECK_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* gltf_model.h: a glTF file as the demo sees it: a tree of nodes that may move, and the surfaces on them. */
+/* gltf_model.h: a glTF file as it is shown: a tree of nodes that may move, and the surfaces on them. */
 #ifndef DEMO_GLTF_MODEL_H
 #define DEMO_GLTF_MODEL_H
 

@@ -54,7 +54,7 @@ class Parts {
 
     const Model &model_;
     Stage &stage_;
-    Imath::M44d to_stage_;        /* from the model's world to the demo's */
+    Imath::M44d to_stage_;        /* from the model's world to the stage's */
     std::vector<Flight> flights_; /* one a node; unused for nodes without parts */
     std::vector<Body> bodies_;    /* one a part of the model */
     std::vector<bool> told_, released_;

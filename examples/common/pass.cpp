@@ -158,8 +158,8 @@ template <typename Wanted> void Pass::gather(ShadowRays &rays, Wanted wanted) {
 }
 
 /*
- * Rays to the sun end in one plane above all objects: nothing is hit beyond it, and raygrid sees that rays which
- * begin far apart run close together there, so that it can take them along together.
+ * Rays to the sun end in one plane above all objects (only the ground is infinite): nothing is hit beyond it, and
+ * raygrid sees that rays which begin far apart run close together there, so that it can take them along together.
  */
 void Pass::end_above_all(rg_scene *scene) {
     rg_grid_report grid = {};
@@ -232,9 +232,7 @@ rg_hit Pass::primary_hit(size_t pixel) const {
 
 rg_ray Pass::sun_ray(size_t index) const {
     const Imath::V3d direction(sun_direction);
-    rg_ray ray = rg_ray_from(&sun.origins[index].x, &direction.x);
-    ray.t_max = double(sun_ends_[index]);
-    return ray;
+    return rg_ray_from(&sun.origins[index].x, &direction.x);
 }
 
 } // namespace demo

@@ -62,7 +62,8 @@ class Pass {
     /** Where in the picture a pixel of the arrays below is: counted row by row. */
     uint32_t place(size_t pixel) const { return places_[pixel]; }
 
-    /* What was asked and answered, in the plain form that the check against brute force takes. */
+    /* What was asked and answered, in the plain form that the check against brute force takes. Rays to the sun go on
+       for ever there: that they end is to save time alone. */
     rg_ray primary_ray(size_t pixel) const;
     rg_hit primary_hit(size_t pixel) const;
     rg_ray sun_ray(size_t index) const;

@@ -53,7 +53,7 @@ class Overlay {
     uint32_t hottest_ = 1;       /* where the scale ends */
     double mean_heat_ = 0;
     std::vector<uint8_t> levels_; /* by pixel, row by row */
-    uint32_t levels_seen_ = 0;   /* bit l for level l */
+    uint32_t levels_seen_ = 0;    /* bit l for level l */
 };
 
 } // namespace viewer
