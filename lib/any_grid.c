@@ -387,7 +387,7 @@ static void hold_unbounded(const rgi_any_grid *grid, const rg_scene *scene, doub
 void rgi_any_grid_report(const rgi_any_grid *grid, const rg_scene *scene, rg_grid_report *report) {
     if (!rgi_any_grid_is_loose(grid)) {
         rgi_grid_report(&grid->cells, report);
-        report->rebuilding = rgi_rebuild_is_under_way(grid);
+        report->rebuilding = grid->rebuild != NULL;
         return;
     }
     memset(report, 0, sizeof *report);
@@ -399,5 +399,5 @@ void rgi_any_grid_report(const rgi_any_grid *grid, const rg_scene *scene, rg_gri
     report->unbounded = grid->lattice.unbounded_count;
     report->levels = rgi_lattice_levels(&grid->lattice);
     report->rebuilds = grid->rebuilds;
-    report->rebuilding = rgi_rebuild_is_under_way(grid);
+    report->rebuilding = grid->rebuild != NULL;
 }

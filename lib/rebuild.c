@@ -38,14 +38,9 @@ typedef struct rgi_rebuild {
 
 /* ------------------------------------------------------------------------------------------ begin and end */
 
-/* Reports look at it while a worker changes it. */
-static void enter(rgi_rebuild *r, stage to) {
-    __atomic_store_n(&r->stage, to, __ATOMIC_RELAXED);
-}
-
 static void give_up(rgi_rebuild *r) {
     r->given_up = true;
-    enter(r, RELEASING);
+    r->stage = RELEASING;
 }
 
 /* The new grid notes places where the old one does not. */
@@ -62,7 +57,7 @@ static rg_result begin(rgi_any_grid *grid, rg_scene *scene, const rgi_grid_rule 
     if (result) return result;
     memset(r, 0, sizeof *r);
     r->rule = *rule;
-    enter(r, rgi_any_grid_is_loose(grid) ? PLANNING : SURVEYING);
+    r->stage = rgi_any_grid_is_loose(grid) ? PLANNING : SURVEYING;
     rgi_empty_box(r->lo, r->hi);
     result = make_places(r, grid, scene);
     if (result) {
@@ -96,17 +91,13 @@ void rgi_rebuild_drop(rgi_any_grid *grid, rg_scene *scene) {
     grid->rebuild = NULL;
 }
 
-bool rgi_rebuild_is_under_way(const rgi_any_grid *grid) {
-    return grid->rebuild && __atomic_load_n(&grid->rebuild->stage, __ATOMIC_RELAXED) < RELEASING;
-}
-
 /* ------------------------------------------------------------------------------------------------ the steps */
 
 /* The rule is asked again with the exact box. */
 static void survey(rgi_rebuild *r, const rgi_any_grid *grid) {
     if (!rgi_grid_survey(&grid->cells, &r->cursor, MEMBERS_SURVEYED, r->lo, r->hi)) return;
     r->needless = !rgi_grid_holds(&grid->cells, &r->rule, r->lo, r->hi);
-    enter(r, r->needless ? RELEASING : PLANNING);
+    r->stage = r->needless ? RELEASING : PLANNING;
 }
 
 static void plan(rgi_rebuild *r, const rgi_any_grid *grid, rg_scene *scene) {
@@ -116,10 +107,10 @@ static void plan(rgi_rebuild *r, const rgi_any_grid *grid, rg_scene *scene) {
     if (rgi_any_grid_is_loose(grid)) {
         result = rgi_any_grid_init(&r->next, scene, grid->index, &grid->config, places);
         rgi_any_grid_frame(&r->next, grid, scene);
-        enter(r, FILLING);
+        r->stage = FILLING;
     } else {
         result = rgi_grid_plan(&r->next.cells, &grid->cells, &r->rule, r->lo, r->hi);
-        enter(r, CLEARING);
+        r->stage = CLEARING;
     }
     if (result) give_up(r);
 }
@@ -131,7 +122,7 @@ static void clear(rgi_rebuild *r) {
     r->cursor += count;
     if (count < left) return;
     r->cursor = 0;
-    enter(r, FILLING);
+    r->stage = FILLING;
 }
 
 static void store(rgi_rebuild *r, rg_scene *scene, uint32_t slot, const rgi_bound *bound) {
@@ -143,7 +134,7 @@ static void store(rgi_rebuild *r, rg_scene *scene, uint32_t slot, const rgi_boun
 static void fill(rgi_rebuild *r, rg_scene *scene) {
     /* A call on many that found no memory has taken slots back: there may be fewer than there were. */
     if (r->cursor >= scene->objects.used) {
-        enter(r, FILLED);
+        r->stage = FILLED;
         return;
     }
     uint32_t slot = r->cursor++;
@@ -170,7 +161,7 @@ static void step(rgi_rebuild *r, const rgi_any_grid *grid, rg_scene *scene) {
         fill(r, scene);
         return;
     case RELEASING:
-        if (!rgi_any_grid_free_some(&r->next, scene)) enter(r, RELEASED);
+        if (!rgi_any_grid_free_some(&r->next, scene)) r->stage = RELEASED;
         return;
     case FILLED:
     case RELEASED:
@@ -185,7 +176,7 @@ static void take_over(rgi_rebuild *r, rgi_any_grid *grid) {
     grid->rebuild = r;
     rgi_any_grid_built(grid, &old, &r->rule);
     r->next = old;
-    enter(r, RELEASING);
+    r->stage = RELEASING;
 }
 
 /* What only a change may do. */
@@ -194,7 +185,7 @@ static void finish(rgi_any_grid *grid, rg_scene *scene) {
     if (r->stage == FILLED) {
         /* Others may have come while the lock was changed. */
         if (r->cursor < scene->objects.used)
-            enter(r, FILLING);
+            r->stage = FILLING;
         else
             take_over(r, grid);
     } else if (r->stage == RELEASED) {
@@ -272,20 +263,22 @@ bool rgi_rebuild_work(void *context) {
     bool wanted = false, finishes = false;
     rgi_scene_begin_read(scene, &frame);
     rgi_any_grid *grid = grid_to_rebuild(scene);
+    bool more = grid;
     if (grid) {
         wanted = make_steps(grid, scene);
         finishes = waits_for_change(grid->rebuild);
     }
     rgi_scene_end_read(scene, &frame);
-    if (!grid) return false;
     if (finishes) {
         /* Another may have been made or dropped in between. */
         rgi_scene_hold(scene, &frame);
         grid = grid_to_rebuild(scene);
         if (grid && waits_for_change(grid->rebuild)) finish(grid, scene);
+        /* When reports say that nothing is being rebuilt, the worker does not look into the scene again. */
+        more = grid_to_rebuild(scene);
         (void)rgi_scene_end_change(scene, &frame, RG_OK);
     }
     /* Many changes in a row are not to wait for a part of the rebuild each. */
     if (wanted) nanosleep(&briefly, NULL);
-    return true;
+    return more;
 }

@@ -23,9 +23,6 @@ void rgi_rebuild_drop(rgi_any_grid *grid, rg_scene *scene);
 /** A part of it: about as long as so many inserts take. */
 void rgi_rebuild_go_on(rgi_any_grid *grid, rg_scene *scene, uint64_t inserts);
 
-/** Whether there is one that has not taken the grid's place yet. */
-bool rgi_rebuild_is_under_way(const rgi_any_grid *grid);
-
 /** What the grid has done with an object is done in the new one, too. */
 void rgi_rebuild_insert(rgi_any_grid *grid, rg_scene *scene, uint32_t slot, const rgi_bound *bound);
 void rgi_rebuild_move(rgi_any_grid *grid, rg_scene *scene, uint32_t slot, const rgi_bound *bound);

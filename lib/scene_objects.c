@@ -93,7 +93,9 @@ void rgi_fetch_place(const rg_scene *scene, rg_object id) {
     if (slot >= scene->objects.used || !rgi_scene_object(scene, slot)->shape) return;
     uint32_t number = __atomic_load_n(&rgi_scene_object(scene, slot)->grid, __ATOMIC_RELAXED) & (RGI_MARK - 1);
     const rgi_any_grid *grid = scene->grids[number].grid;
-    if (rgi_any_grid_is_loose(grid)) rgi_lattice_fetch(&grid->lattice, rgi_any_grid_place(grid, scene, slot));
+    if (!rgi_any_grid_is_loose(grid)) return;
+    const rgi_location *place = rgi_any_grid_place(grid, scene, slot);
+    if (place->block != RGI_NONE) rgi_lattice_fetch(&grid->lattice, place);
 }
 
 rg_result rgi_find_object(const rg_scene *scene, rg_object id, uint32_t *slot) {

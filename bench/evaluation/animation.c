@@ -73,7 +73,7 @@ static void place_flake(struct bench_scene *scene) {
 static struct bench_scene *empty_scene(const char *name, uint32_t count, int shapes) {
     struct bench_scene *scene = bench_allocate(1, sizeof *scene);
     scene->name = name;
-    scene->count = count;
+    scene->count = scene->size = count;
     scene->random = count;
     scene->shape_count = shapes;
     scene->shapes = bench_allocate((size_t)shapes, sizeof *scene->shapes);

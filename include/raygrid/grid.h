@@ -107,7 +107,7 @@ typedef struct rg_grid_report {
                                               box), tested for every ray */
     uint64_t tiles;                        /* tiles of the physical box that hold something; 1 if nothing left it */
     uint64_t rebuilds;   /* how often it was rebuilt: by itself, rg_grid_rebuild, rg_grid_configure */
-    uint32_t rebuilding; /* 1 while another is made beside it that will take its place, else 0 */
+    uint32_t rebuilding; /* 1 from when another is begun beside it until the memory of the old one is freed, else 0 */
     uint32_t reserved;   /* 0 */
 } rg_grid_report;
 

@@ -2,10 +2,11 @@
 """Pictures that the viewer has written, read back."""
 import functools
 import json
+import os
 import subprocess
 import sys
 
-VIEWER, EXR_DUMP, PNG_DUMP = sys.argv[1:4]
+VIEWER, EXR_DUMP, PNG_DUMP = map(os.path.abspath, sys.argv[1:4])
 del sys.argv[1:4]
 
 

@@ -94,7 +94,7 @@ pub struct GridReport {
     pub tiles: u64,
     /// How often it was rebuilt.
     pub rebuilds: u64,
-    /// Whether another is made beside it that will take its place.
+    /// From when another is begun beside it until the memory of the old one is freed.
     pub rebuilding: bool,
 }
 
