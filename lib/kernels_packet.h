@@ -149,14 +149,24 @@ RGI_INLINE bool bound_slopes(rgi_frustum *f, uint32_t which, float radius, float
     span slopes = span_of_none(), begins = span_of_none(), ends = span_of_none();
     for (uint32_t n = 0; n < f->count; n++) {
         const rgi_packet *p = f->packets[n];
-        f16 direction = f16_load(p->direction[a]), o = f16_load(p->origin[a]);
         /* Per length of way along the axis, whichever its sense. */
-        span_add(&slopes, f16_mul(direction, f16_mul(f16_load(p->inverse[k]), f16_set(f->sense))));
-        span_add(&begins, o);
-        span_add(&ends, f16_fma(f16_load(p->t_hi), direction, o));
+        f16 per_way = f16_mul(f16_load(p->inverse[k]), f16_set(f->sense));
+        span_add(&slopes, f16_mul(f16_load(p->direction[a]), per_way));
     }
     float least = f16_least(slopes.least), most = f16_most(slopes.most);
-    if (!(most - least <= (f->count > 1 ? SLOPES_OF_SEVERAL : SLOPES) * spacing)) return false;
+    if (!(most - least <= (float)(f->count > 1 ? SLOPES_OF_SEVERAL : SLOPES) * spacing)) return false;
+    /* How far apart they are across the way that they go; where they end, as far as that is known: rays to a sun that
+     * end nowhere seem to meet there. */
+    f16 slope = f16_set(-0.5f * f->sense * (least + most));
+    for (uint32_t n = 0; n < f->count; n++) {
+        const rgi_packet *p = f->packets[n];
+        f16 t = f16_load(p->t_hi), o = f16_load(p->origin[a]), along = f16_load(p->origin[k]);
+        f16 end = f16_fma(t, f16_load(p->direction[a]), o), lost = f16_mul(t, f16_set(0x1p-20f));
+        span_add(&begins, f16_fma(slope, along, o));
+        end = f16_fma(slope, f16_fma(t, f16_load(p->direction[k]), along), end);
+        span_add(&ends, f16_sub(end, lost));
+        span_add(&ends, f16_add(end, lost));
+    }
     least -= SLOPE_PAD * (1 + fabsf(least));
     most += SLOPE_PAD * (1 + fabsf(most));
     float begin_apart = span_width(&begins), end_apart = span_width(&ends);
