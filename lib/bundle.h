@@ -5,6 +5,7 @@
 #ifndef RAYGRID_LIB_BUNDLE_H
 #define RAYGRID_LIB_BUNDLE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { RGI_PACKET = 16 };
@@ -25,6 +26,8 @@ typedef struct rgi_meeting {
     double radius[RGI_PACKET];
     double scaled_t[RGI_PACKET]; /* out: in units of the scaled direction */
     double t[RGI_PACKET];        /* out: in units of the direction that the caller gave */
+    bool wants_normals;
+    float normal[3][RGI_PACKET]; /* out, if wanted: of length 1, as in rg_hit */
     uint32_t met;                /* out: bits of the lanes where the ball is met in range */
 } rgi_meeting;
 

@@ -60,10 +60,28 @@ static bool prepare(rgi_bundle *b) {
     return true;
 }
 
+/* world_normal of query.c for balls; where nothing is left of one, the ball is not met here. */
+RGI_INLINE void meet_normals(const rgi_bundle *b, double in[3][RGI_PACKET], const double root[RGI_PACKET],
+                             rgi_meeting *m, int met[RGI_PACKET]) {
+    LANES(i) {
+        double x = in[0][i] + root[i] * b->direction[0][i], y = in[1][i] + root[i] * b->direction[1][i];
+        double z = in[2][i] + root[i] * b->direction[2][i];
+        double largest = rgi_max(rgi_max(fabs(x), fabs(y)), fabs(z));
+        met[i] &= (largest > 0) & (largest <= DBL_MAX);
+        x /= largest;
+        y /= largest;
+        z /= largest;
+        double length = sqrt(x * x + y * y + z * z);
+        m->normal[0][i] = (float)(x / length);
+        m->normal[1][i] = (float)(y / length);
+        m->normal[2][i] = (float)(z / length);
+    }
+}
+
 /* Where the rays meet balls: rgi_object_intersect with rgi_sphere_intersect. What is left out there, a first test
  * that most objects fail, changes no answer. */
 static void meet(const rgi_bundle *b, rgi_meeting *m) {
-    double in[3][RGI_PACKET], shift[RGI_PACKET], along[RGI_PACKET];
+    double in[3][RGI_PACKET], shift[RGI_PACKET], along[RGI_PACKET], root[RGI_PACKET];
     int met[RGI_PACKET];
     LANES(i) {
         double oo = 0, od = 0;
@@ -95,13 +113,15 @@ static void meet(const rgi_bundle *b, rgi_meeting *m) {
         int rounding = fabs(c) > 2 * (q * far_from_zero);
         double over = rounding ? (od > 0 ? -od + h : -od - h) : c, under = rounding ? dd : q;
         double near_zero = under != 0 ? over / under : 0;
-        double first = shift[i] + (od > 0 ? far_from_zero : near_zero);
-        double second = shift[i] + (od > 0 ? near_zero : far_from_zero);
+        double near_root = od > 0 ? far_from_zero : near_zero, far_root = od > 0 ? near_zero : far_from_zero;
+        double first = shift[i] + near_root, second = shift[i] + far_root;
         int first_in = (first >= b->t_min[i]) & (first <= b->t_max[i]);
         int second_in = (second >= b->t_min[i]) & (second <= b->t_max[i]);
         m->scaled_t[i] = first_in ? first : second;
+        root[i] = first_in ? near_root : far_root;
         met[i] = (inside >= 0) & (first_in | second_in);
     }
+    if (m->wants_normals) meet_normals(b, in, root, m, met);
     m->met = 0;
     LANES(i) m->t[i] = m->scaled_t[i] * b->to_world[i] * b->to_world2[i];
     LANES(i) m->met |= (uint32_t)met[i] << i;

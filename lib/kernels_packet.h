@@ -91,6 +91,7 @@ static void settle_ball(const rgi_lattice *lattice, rgi_packet *p, uint32_t rays
     const rgi_object *object = rgi_slots_at(lattice->objects, slot);
     for (int a = 0; a < 3; a++) LANES(i) m.centre[a][i] = object->position[a];
     LANES(i) m.radius[i] = object->reach;
+    m.wants_normals = false;
     meet(p->bundle, &m);
     uint32_t met = rays & m.met, compare = met & (p->certain | p->found);
     p->certain |= met & ~compare;

@@ -335,7 +335,7 @@ static void ask_unbounded(group *g, rgi_packet *p) {
 
 /* Whether of a hit no more is wanted than what rgi_meeting has. */
 static bool wants_little(const rgi_call *c) {
-    return !c->plain_hits && !c->wanted && !c->hits.u.data && !c->hits.v.data;
+    return !c->plain_hits && !(c->wanted & ~(unsigned)RGI_NORMAL) && !c->hits.u.data && !c->hits.v.data;
 }
 
 /* Where the rays meet the balls that are certain: for all at once. Returns the bits of those it is right for. */
@@ -351,6 +351,7 @@ static uint32_t meet_certain(const group *g, const rgi_packet *p, rgi_meeting *m
         m->radius[i] = object->reach;
         ids[i] = rgi_object_id(object, slot);
     }
+    m->wants_normals = g->call->wanted & RGI_NORMAL;
     scene->kernels->meet(&g->bundle, m);
     return p->certain & m->met;
 }
@@ -371,6 +372,8 @@ static uint32_t write_unasked(const group *g, const rgi_packet *p) {
     uint64_t ids[RGI_PACKET] = {0};
     uint32_t all = (1u << g->count) - 1, met = 0, written = all & ~g->made & ~p->certain;
     if (p->certain) met = meet_certain(g, p, &m, ids);
+    /* Of triangles the normals are not known. */
+    if (c->wanted) written &= ~g->known.rays;
     written |= met;
     for (uint32_t i = 0; i < g->count; i++) {
         bool hit = met >> i & 1;
@@ -382,6 +385,10 @@ static uint32_t write_unasked(const group *g, const rgi_packet *p) {
         rgi_store(&c->hits.t, g->first + i, hit ? m.t[i] : INFINITY);
         rgi_store_integer(&c->hits.object, g->first + i, hit ? ids[i] : RG_NO_OBJECT);
         rgi_store_integer(&c->hits.primitive, g->first + i, hit ? 0 : RG_NO_PRIMITIVE);
+        if (hit && c->wanted)
+            rgi_store3(&c->hits.normal, g->first + i, m.normal[0][i], m.normal[1][i], m.normal[2][i]);
+        else
+            rgi_store3(&c->hits.normal, g->first + i, 0, 0, 0);
     }
     return written;
 }

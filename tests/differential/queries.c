@@ -176,14 +176,16 @@ static void count_too(rg_hit_views *views, hit_parts *parts) {
     views->tests = (rg_output){parts->tests, sizeof(uint32_t), RG_U32};
 }
 
-/* No more than tells what is hit, and where: what is not asked for may be found another way, or not at all. */
-static rg_hit_views little(rg_hit *hits, uint32_t count) {
+/* No more than tells what is hit, and where, and perhaps the normal: what is not asked for may be found another way,
+ * or not at all. */
+static rg_hit_views little(rg_hit *hits, uint32_t count, bool normals) {
     const ptrdiff_t stride = sizeof *hits;
     rg_hit_views views = {.size = sizeof views};
     memset(hits, 0, count * sizeof *hits);
     views.t = (rg_output){&hits->t, stride, RG_F64};
     views.object = (rg_output){&hits->object, stride, RG_U64};
     views.primitive = (rg_output){&hits->primitive, stride, RG_U32};
+    if (normals) views.normal = rg_output3_packed(hits->normal, stride, RG_F32);
     return views;
 }
 
@@ -294,7 +296,8 @@ void world_query_views(world *w, uint32_t count) {
         expected_invalid += !reference_valid(&rays[i]);
     }
     rg_ray_views views = split_rays(rays, count, &in);
-    rg_hit_views wanted = same_types(&out), others = other_types(&out), least = little(few, count);
+    bool normals = random_once_in(&w->random, 2);
+    rg_hit_views wanted = same_types(&out), others = other_types(&out), least = little(few, count, normals);
     if (random_once_in(&w->random, 2)) count_too(&wanted, &out);
     rg_output flags = {occluded, 1, RG_U8};
     rg_result result = rg_scene_trace_views(w->scene, &config, &views, &wanted, count);
@@ -313,6 +316,7 @@ void world_query_views(world *w, uint32_t count) {
         judge(w, &rays[i], config.cull, h);
         judge_occluded(w, &rays[i], config.cull, h, occluded[i]);
         bool same = few[i].object == h->object && few[i].primitive == h->primitive;
+        same &= !normals || memcmp(few[i].normal, h->normal, sizeof h->normal) == 0;
         if (!same || (few[i].t != h->t && !(isnan(few[i].t) && isnan(h->t))))
             fail_on(w, &rays[i], config.cull, &few[i], "another hit where less is asked for");
         if (!agree(h, &out, i)) fail_on(w, &rays[i], config.cull, h, "outputs of other types differ");

@@ -163,9 +163,9 @@ static rg_hit_views views_of(rg_hit *hits, bool all) {
     views.t = (rg_output){&hits->t, stride, RG_F64};
     views.object = (rg_output){&hits->object, stride, RG_U64};
     views.primitive = (rg_output){&hits->primitive, stride, RG_U32};
+    views.normal = rg_output3_packed(hits->normal, stride, RG_F32);
     if (!all) return views;
     views.position = rg_output3_packed(hits->position, stride, RG_F64);
-    views.normal = rg_output3_packed(hits->normal, stride, RG_F32);
     views.offset = (rg_output){&hits->offset, stride, RG_F32};
     views.u = (rg_output){&hits->u, stride, RG_F32};
     views.v = (rg_output){&hits->v, stride, RG_F32};

@@ -65,6 +65,13 @@ START_TEST(prepared_alike) {
 }
 END_TEST
 
+/* A component of a vector that is made one of length 1. */
+static double unit_of(const double v[3], int axis) {
+    double largest = rgi_max_magnitude(v), n[3];
+    for (int a = 0; a < 3; a++) n[a] = v[a] / largest;
+    return n[axis] / sqrt(rgi_dot(n, n));
+}
+
 /* Where a ray meets a ball: the bits of rgi_object_intersect. */
 START_TEST(balls_met_alike) {
     const rgi_kernels *k = machine_kernels[_i];
@@ -90,6 +97,7 @@ START_TEST(balls_met_alike) {
                 m.centre[a][i] = b.origin[a][i] + away * m.radius[i] * d[a] + aside * beside;
             }
         }
+        m.wants_normals = true;
         k->meet(&b, &m);
         for (int i = 0; i < RGI_PACKET; i++) {
             rgi_object o = {.shape = shape, .linear = RGI_NONE, .reach = m.radius[i], .mask = 1};
@@ -110,6 +118,7 @@ START_TEST(balls_met_alike) {
             hits += hit;
             MUST((m.met >> i & 1) == hit);
             if (hit) MUST(same_bits(m.scaled_t[i], found.t) && same_bits(m.t[i], rgi_world_t(&r, found.t)));
+            for (int a = 0; a < 3 && hit; a++) MUST(fabs(m.normal[a][i] - unit_of(found.normal, a)) <= 0x1p-24);
         }
     }
     if (machine_can_run(k)) ck_assert_uint_gt(hits, 10000);
