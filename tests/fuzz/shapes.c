@@ -62,7 +62,7 @@ enum { VERTICES = 6, TRIANGLES = 8 };
 static void make_mesh(script *s) {
     static const uint32_t OCTAHEDRON[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
     double v[3 * VERTICES] = {0};
-    uint32_t index[3 * TRIANGLES];
+    uint32_t index[3 * TRIANGLES + 1] = {0}; /* one more: they may be taken for wider ones */
     uint8_t flags = read_byte(s);
     rg_mesh_views views = {.size = read_size(s, sizeof views), .vertex_count = VERTICES, .triangle_count = TRIANGLES};
     bool right = views.size == sizeof views;

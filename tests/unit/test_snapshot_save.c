@@ -52,6 +52,8 @@ START_TEST(later_calls_give_the_same_ids) {
         other.shapes[i] = report.shape;
         rg_shape_retain(report.shape);
     }
+    other.forms[0] = other.shapes[4];
+    for (int i = 0; i < 2; i++) rg_shape_retain(other.forms[i]);
     for (uint32_t turn = 0; turn < 30; turn++) {
         saved_scene_change(&s, turn);
         saved_scene_change(&other, turn);
