@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { OBJECTS = 5200, RAYS = 400, TURNS = SHORT_TESTS ? 6 : 30 };
+enum { OBJECTS = 5200, RAYS = 400, TURNS = SHORT_TESTS ? 3 : 30, FAR_TURNS = SHORT_TESTS ? 40 : 80 };
 
 /* Balls of lattices are shared out whole, of all others the first look at them. */
 static const struct form {
@@ -163,7 +163,7 @@ END_TEST
 /* Carried far away, so that loose grids are made anew meanwhile. */
 START_TEST(through_rebuilds) {
     begin(2, forms[_i]);
-    for (int turn = 0; turn < 80; turn++) {
+    for (int turn = 0; turn < FAR_TURNS; turn++) {
         any_moves(which, to, OBJECTS, 1);
         for (int i = 0; i < OBJECTS; i++) to[i][0] += 100;
         ck_assert_int_eq(move_both(which, to, OBJECTS), RG_OK);
