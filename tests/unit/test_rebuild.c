@@ -220,7 +220,10 @@ START_TEST(by_a_worker_alone) {
     fill(10);
     until_rebuilding(1e4);
     while (report().rebuilding) nanosleep(&briefly, NULL);
+    /* When reports say so, the old grid's memory is free already. */
+    uint64_t bytes = __atomic_load_n(&w.bytes, __ATOMIC_RELAXED);
     check_all();
+    ck_assert_uint_eq(__atomic_load_n(&w.bytes, __ATOMIC_RELAXED), bytes);
     end();
 }
 END_TEST
