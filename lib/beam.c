@@ -31,8 +31,7 @@ void rgi_beam_start(rgi_beam *beam, rgi_ref root) {
     beam->hit = false;
     beam->nodes = 0;
     beam->waiting = 0;
-    beam->inside = false;
-    beam->room = NULL;
+    beam->lanes = NULL;
     beam->depth = 1;
     beam->refs[0] = root;
     beam->ts[0] = beam->t_min;

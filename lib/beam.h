@@ -17,6 +17,7 @@
 
 typedef struct rgi_kernels rgi_kernels;
 struct rgi_mesh_ray;
+struct rgi_mesh_lanes;
 struct rgi_mesh_packet;
 struct rgi_object;
 struct rgi_wrap;
@@ -24,7 +25,7 @@ struct rgi_cut;
 struct rgi_making;
 
 /** Entries of a beam's stack; what goes deeper is walked by recursion. */
-enum { RGI_STACK = 256 };
+enum { RGI_STACK = 64 };
 
 /** Packets that may go together: 8x8 pixels of a picture. */
 enum { RGI_PACKETS = 4 };
@@ -44,7 +45,7 @@ enum { RGI_PACKETS = 4 };
 #define RGI_T_MOST 0x1p90
 
 /** What came of trying to enter a mesh. */
-typedef enum rgi_entered { RGI_NO_MESH_THERE, RGI_PASSED_BY, RGI_ENTERED } rgi_entered;
+typedef enum rgi_entered { RGI_NO_MESH_THERE, RGI_PASSED_BY, RGI_AT_DOOR } rgi_entered;
 
 /** Where the frame's t is zero, and how it grows with the ray's. */
 typedef struct rgi_beam_scale {
@@ -68,12 +69,11 @@ typedef struct rgi_beam {
     /** Intersects the object with the ray in double; may lower t_max. Returns true to end. */
     bool (*ask)(struct rgi_beam *beam, uint32_t slot);
     void *query;
-    /** For rays side by side: where the walk inside a mesh has room. NULL: meshes are asked as other objects. `enter`
-     * begins it if the object is a mesh; `leave` ends it, and returns true to end. */
-    struct rgi_mesh_ray *room;
+    /** For rays side by side: in which they go through meshes. NULL: meshes are asked as other objects. `enter` takes
+     * a lane if the object is a mesh; `leave` looks what became of it, and returns true to end. */
+    struct rgi_mesh_lanes *lanes;
     rgi_entered (*enter)(struct rgi_beam *beam, uint32_t slot);
-    bool (*leave)(struct rgi_beam *beam);
-    bool inside;             /* it is in a mesh */
+    bool (*leave)(struct rgi_beam *beam, uint32_t lane);
     bool any;                /* any hit will do, and what is certain need not be asked */
     bool hit;                /* out: it has one that was not asked */
     float t_after, t_before; /* what is met between these is surely in range */
@@ -192,11 +192,14 @@ struct rgi_kernels {
     void (*trace_frusta)(const rgi_lattice *lattice, rgi_frustum *one, rgi_frustum *other);
     /** Takes one ray through a mesh. */
     void (*mesh_one)(struct rgi_mesh_ray *ray);
-    /** Brings the rays of a bundle into the local frame of an object that is a mesh, and into that of the mesh. */
-    void (*mesh_enter)(const rgi_bundle *bundle, const struct rgi_object *object, const rgi_linear *linear,
-                       struct rgi_mesh_packet *packet);
+    /** Brings the rays of a bundle into the local frame of an object that is a mesh, and into that of the mesh.
+     * Returns the bits of those that do not pass it by. */
+    uint32_t (*mesh_enter)(const rgi_bundle *bundle, const struct rgi_object *object, const rgi_linear *linear,
+                           struct rgi_mesh_packet *packet);
     /** Takes them through, if they go the same way; else false: nothing was done. */
     bool (*mesh_packet)(struct rgi_mesh_packet *packet);
+    /** Takes them through, each its own way: those of the first row. */
+    void (*mesh_apart)(struct rgi_mesh_lanes *lanes);
     /** Finds the plane between bins that parts the items of a mesh at the least cost; `fill`: items of a leaf. */
     void (*find_split)(const struct rgi_wrap *items, uint32_t count, const struct rgi_wrap *centres,
                        const float scales[3], uint32_t bins, uint32_t fill, struct rgi_cut *best);

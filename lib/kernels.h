@@ -5,7 +5,7 @@
  * Everything here passes over what can't be met, and asks for the rest. Bounds are explained in lattice.c (PAD) and
  * beam.c; constants below name their share.
  */
-#include "beam.h"
+#include "mesh_ray.h"
 #include "simd.h"
 
 #include <float.h>
@@ -138,27 +138,14 @@ RGI_INLINE uint32_t flip_order(uint32_t bits, uint32_t flip) {
 #include "kernels_mesh.h"
 #endif
 
-/* Asks about one object. Returns true if the walk is to end; it may be inside of a mesh then. */
+/* Asks about one object. Returns true if the walk is to end, or is at the door of a mesh. */
 RGI_INLINE bool ask_one(rgi_beam *b, uint32_t slot) {
-    if (!b->room) return b->ask(b, slot);
-    rgi_entered entered = b->enter(b, slot);
-    if (entered == RGI_NO_MESH_THERE) return b->ask(b, slot);
-    b->inside = entered == RGI_ENTERED;
-    return b->inside;
+    rgi_entered entered = b->lanes ? b->enter(b, slot) : RGI_NO_MESH_THERE;
+    return entered == RGI_NO_MESH_THERE ? b->ask(b, slot) : entered == RGI_AT_DOOR;
 }
 
-/* Goes on inside a mesh. Returns true if the walk is to end. */
-RGI_INLINE bool step_inside(rgi_beam *b) {
-#if !defined(RGI_NO_MESH)
-    if (mesh_step(b->room)) return false;
-    b->inside = false;
-    return b->leave(b);
-#else
-    return b->leave(b);
-#endif
-}
-
-/* Asks the objects that wait, the nearest first. Returns true if the walk is to end, or is inside of a mesh. */
+/* Asks the objects that wait, the nearest first. Returns true if the walk is to end, or is at the door of a
+ * mesh. */
 RGI_INLINE bool ask_waiting(const rgi_lattice *lattice, rgi_beam *b) {
     const uint32_t *slots = rgi_block_at(lattice, b->block)->slots;
     uint32_t waiting = b->waiting;
@@ -181,7 +168,8 @@ RGI_INLINE bool ask_waiting(const rgi_lattice *lattice, rgi_beam *b) {
 
 static bool walk_below(const rgi_lattice *lattice, rgi_beam *b, rgi_ref ref);
 
-/* By recursion: where the stack is full. Nodes are at most so many levels deep as there are sizes of cells. */
+/* By recursion: where the stack is full. Nodes are at most so many levels deep as there are sizes of cells. From
+ * there no ray can stop at a door: meshes are asked at once. */
 static bool walk_node_below(const rgi_lattice *lattice, rgi_beam *b, const rgi_node *n) {
     float t[RGI_OCTANTS];
     f8 first;
@@ -206,12 +194,7 @@ static bool walk_below(const rgi_lattice *lattice, rgi_beam *b, rgi_ref ref) {
         b->block = ref;
         b->waiting = meet_block(rgi_block_at(lattice, ref), b);
         if (b->hit) return true;
-        while (ask_waiting(lattice, b)) {
-            if (!b->inside) return true;
-            while (b->inside) {
-                if (step_inside(b)) return true;
-            }
-        }
+        if (ask_waiting(lattice, b)) return true;
     }
     return false;
 }
@@ -230,17 +213,23 @@ RGI_INLINE void fetch_ahead(const rgi_lattice *lattice, rgi_ref ref) {
 RGI_INLINE bool visit_node(const rgi_lattice *lattice, rgi_beam *b, const rgi_node *n, float from) {
     f8 t;
     /* Room for 8 children, 8 more that are written and not kept, and its own chain. */
-    if (b->depth + 2 * RGI_OCTANTS + 1 > RGI_STACK) return walk_node_below(lattice, b, n);
+    if (b->depth + 2 * RGI_OCTANTS + 1 > RGI_STACK) {
+        struct rgi_mesh_lanes *lanes = b->lanes;
+        b->lanes = NULL;
+        bool ends = walk_node_below(lattice, b, n);
+        b->lanes = lanes;
+        return ends;
+    }
     uint32_t met = meet_octants(n->lo[0], b, &t);
     b->depth += f8_keep(met, orders[b->negative], t, n->child, b->ts + b->depth, b->refs + b->depth);
     if (n->own) push(b, n->own, from);
     return false;
 }
 
-/* One step on the way of a ray: asks what waits, or looks into the next node or block. Returns false at the end. */
+/* One step on the way of a ray: asks what waits, or looks into the next node or block. Returns false at the end, and
+ * at the door of a mesh. */
 RGI_INLINE bool step(const rgi_lattice *lattice, rgi_beam *b, bool ahead) {
-    if (b->inside) return !step_inside(b);
-    if (b->waiting && ask_waiting(lattice, b)) return b->inside;
+    if (b->waiting && ask_waiting(lattice, b)) return false;
     rgi_ref ref;
     float t;
     do {
@@ -307,29 +296,48 @@ static void trace_one(const rgi_lattice *lattice, rgi_beam *b) {
     }
 }
 
+#include "kernels_packet.h"
+
+#if !defined(RGI_NO_MESH)
+#include "kernels_build.h"
+#include "kernels_mesh_enter.h"
+#include "kernels_mesh_triangles.h"
+
+#include "kernels_mesh_lanes.h"
+#include "kernels_mesh_packet.h"
+#else
+#define mesh_side_by_side(lanes) ((void)(lanes))
+#endif
+
+/* Takes the rays that are at doors through the meshes. Lists those that go on; returns how many. */
+RGI_INLINE uint32_t go_through_meshes(rgi_mesh_lanes *l, rgi_beam *active[RGI_SIDE_BY_SIDE]) {
+    uint32_t kept = 0;
+    mesh_side_by_side(l);
+    for (uint32_t i = 0; i < l->count; i++) {
+        if (!l->beams[i]->leave(l->beams[i], i)) active[kept++] = l->beams[i];
+    }
+    l->count = 0;
+    return kept;
+}
+
 static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t count) {
-    rgi_beam *active[RGI_PACKET];
+    rgi_beam *active[RGI_SIDE_BY_SIDE];
+    rgi_mesh_lanes *lanes = beams[0].lanes;
     for (uint32_t i = 0; i < count; i++) active[i] = &beams[i];
     while (count) {
         uint32_t kept = 0;
         for (uint32_t i = 0; i < count; i++) {
             if (step(lattice, active[i], true)) active[kept++] = active[i];
         }
-        count = kept;
+        count = kept || !lanes || !lanes->count ? kept : go_through_meshes(lanes, active);
     }
 }
-
-#include "kernels_packet.h"
-
-#if !defined(RGI_NO_MESH)
-#include "kernels_build.h"
-#include "kernels_mesh_packet.h"
-#endif
 
 #if defined(RGI_NO_MESH)
 #define mesh_one NULL
 #define mesh_enter NULL
 #define mesh_packet NULL
+#define mesh_apart NULL
 #define find_split NULL
 #define measure_leaf NULL
 #define wrap_items NULL
@@ -338,6 +346,6 @@ static void trace_some(const rgi_lattice *lattice, rgi_beam *beams, uint32_t cou
 #endif
 
 const rgi_kernels RGI_PASTE(rgi_kernels_, RGI_NAME) = {
-    RGI_TEXT(RGI_NAME), RGI_ISA,    unite_block,   prepare,      to_frame,    bound,      meet,
-    trace_one,          trace_some, trace_frustum, trace_frusta, mesh_one,    mesh_enter, mesh_packet,
-    find_split,         part_items, part_few,      wrap_items,   measure_leaf};
+    RGI_TEXT(RGI_NAME), RGI_ISA,    unite_block,   prepare,      to_frame,   bound,       meet,
+    trace_one,          trace_some, trace_frustum, trace_frusta, mesh_one,   mesh_enter,  mesh_packet,
+    mesh_apart,         find_split, part_items,    part_few,     wrap_items, measure_leaf};

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The part of the kernels for the inside of meshes; included by kernels.h alone, after what it builds on. */
-#include "mesh_ray.h"
 
 /*
  * Triangles of a leaf that the ray may meet, as bits. Signs of edge functions as in triangle.c, but in float and with
@@ -68,30 +67,6 @@ static bool mesh_below(rgi_mesh_ray *m, rgi_mesh_ref ref) {
         if (mesh_below(m, n->child[octant])) return true;
     }
     return false;
-}
-
-/* One step on the way of a ray among others. Returns false at the end. */
-RGI_INLINE bool mesh_step(rgi_mesh_ray *m) {
-    rgi_beam *b = &m->beam;
-    f8 t;
-    do {
-        if (b->depth == 0) return false;
-    } while (b->ts[--b->depth] > b->t_max);
-    rgi_mesh_ref ref = b->refs[b->depth];
-    if (ref & RGI_MESH_LEAF) {
-        if (visit_leaf(m, ref)) return false;
-    } else if (b->depth + RGI_CHILDREN > RGI_STACK) {
-        if (mesh_below(m, ref)) return false;
-    } else {
-        const rgi_mesh_node *n = rgi_mesh_at(m->mesh, ref);
-        uint32_t met = meet_octants(n->lo[0], b, &t);
-        b->depth += f8_keep(met, orders[b->negative], t, n->child, b->ts + b->depth, b->refs + b->depth);
-    }
-    if (b->depth) {
-        const char *next = rgi_mesh_at(m->mesh, b->refs[b->depth - 1]);
-        for (int i = 0; i < 5; i++) __builtin_prefetch(next + RGI_MESH_LINE * i);
-    }
-    return true;
 }
 
 /* As trace_one: the nearest child is gone into at once. */

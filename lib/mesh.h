@@ -56,6 +56,7 @@ typedef struct rgi_mesh {
     const struct rgi_kernels *kernels;
     char *lines; /* all nodes and leaves */
     uint32_t line_count;
+    uint32_t levels; /* nodes and a leaf on the longest way from the root */
     rgi_mesh_ref root;
     uint32_t triangle_count, vertex_count;
     bool soup;                     /* leaves are rgi_soup_leaf */

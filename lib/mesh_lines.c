@@ -24,6 +24,7 @@ typedef struct writer {
 typedef struct child {
     const rgi_branch *branch;
     rgi_mesh_ref ref;
+    uint32_t levels; /* see rgi_mesh */
     float lo[3], hi[3];
 } child;
 
@@ -232,6 +233,7 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
     const rgi_mesh *mesh = w->making->mesh;
     out->branch = b;
     out->ref = (rgi_mesh_ref)w->lines;
+    out->levels = 1;
     if (is_leaf(w->making, b)) {
         out->ref |= RGI_MESH_LEAF;
         void *leaf = rgi_mesh_at(mesh, out->ref);
@@ -254,7 +256,8 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
     write_node(rgi_mesh_at(mesh, out->ref), children, count);
     memcpy(out->lo, children[0].lo, sizeof out->lo);
     memcpy(out->hi, children[0].hi, sizeof out->hi);
-    for (uint32_t i = 1; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
+        out->levels = children[i].levels >= out->levels ? children[i].levels + 1 : out->levels;
         for (int a = 0; a < 3; a++) {
             out->lo[a] = children[i].lo[a] < out->lo[a] ? children[i].lo[a] : out->lo[a];
             out->hi[a] = children[i].hi[a] > out->hi[a] ? children[i].hi[a] : out->hi[a];
@@ -280,5 +283,6 @@ rg_result rgi_lines_make(const rgi_making *making) {
     w.lines = w.leaves = 0;
     write_lines(&w, making->branches, &root);
     mesh->root = root.ref;
+    mesh->levels = root.levels;
     return RG_OK;
 }

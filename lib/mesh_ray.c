@@ -11,41 +11,18 @@
  */
 static void make_filter(rgi_mesh_ray *m) {
     const rgi_beam *b = &m->beam;
-    rgi_triangle_filter_init(&m->filter, &m->triangles, b->origin, b->direction, b->inverse[m->triangles.z],
-                             rgi_place_error(m->mesh, b->origin));
+    rgi_triangle_filter_init(&m->filter, &m->triangles.line, b->origin, b->direction, b->inverse[m->triangles.line.z],
+                             rgi_place_error(m->mesh->middle.extent, (double)m->mesh->rounding, b->origin));
 }
 
-/* A ray of a packet on its own, for triangles. */
-static void take_out(const rgi_mesh_packet *m, uint32_t ray, rgi_triangle_ray *t, rgi_local_ray *local) {
-    for (int a = 0; a < 3; a++) {
-        local->origin[a] = m->origin[a][ray];
-        local->direction[a] = m->direction[a][ray];
-    }
-    local->shift = m->shift[ray];
-    t->ray = local;
-    t->x = (int)m->filters[ray].x;
-    t->y = (int)m->filters[ray].y;
-    t->z = (int)m->filters[ray].z;
-    t->shear[0] = m->shear[0][ray];
-    t->shear[1] = m->shear[1][ray];
-}
-
-void rgi_mesh_packet_describe(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle,
-                              rgi_candidate *candidate) {
+bool rgi_mesh_packet_accepts(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle) {
     rgi_triangle_ray t;
-    rgi_local_ray local;
-    take_out(m, ray, &t, &local);
-    (void)rgi_triangle_meets(&t, m->mesh, leaf, triangle, candidate);
-}
-
-bool rgi_mesh_packet_test(const rgi_mesh_packet *m, uint32_t ray, const void *leaf, uint32_t triangle, double *at) {
-    rgi_triangle_ray t;
-    rgi_local_ray local;
     rgi_candidate c;
-    take_out(m, ray, &t, &local);
-    uint32_t side = rgi_triangle_meets(&t, m->mesh, leaf, triangle, &c);
-    *at = c.t;
-    return side & m->sides;
+    const rgi_local_ray local = {.shift = m->shift[ray]};
+    t.ray = &local;
+    rgi_mesh_packet_line(m, ray, &t.line);
+    (void)rgi_triangle_meets(&t, m->mesh[ray], leaf, triangle, &c);
+    return m->accept(m->contexts[ray], &c);
 }
 
 bool rgi_mesh_begin(rgi_mesh_ray *m, const rgi_mesh *mesh, const rgi_local_ray *ray) {

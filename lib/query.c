@@ -88,8 +88,8 @@ static bool begin_test(rgi_query *q, uint32_t slot, const rgi_object *object) {
     return true;
 }
 
-/* Takes what the test gave. Returns true if nothing more is wanted. */
-static bool end_test(rgi_query *q, bool hit, const rgi_candidate *candidate) {
+/* Takes what the test gave; leaf and triangle as in rgi_query. Returns true if nothing more is wanted. */
+static bool end_test(rgi_query *q, bool hit, const rgi_candidate *candidate, const void *leaf, uint32_t triangle) {
     q->failed |= q->local.failed;
     if (q->failed) return true;
     if (!hit) return false;
@@ -98,6 +98,8 @@ static bool end_test(rgi_query *q, bool hit, const rgi_candidate *candidate) {
     q->id = q->testing_id;
     q->object = q->testing;
     q->best = *candidate;
+    q->leaf = leaf;
+    q->triangle = triangle;
     q->walk.t_max = candidate->t;
     return q->call->any;
 }
@@ -109,36 +111,54 @@ bool rgi_query_visit(void *context, uint32_t slot) {
     rgi_candidate candidate;
     if (!begin_test(q, slot, object)) return false;
     bool hit = rgi_object_intersect(object, rgi_scene_linear(scene, object), &q->ray, &q->local, &candidate);
-    return end_test(q, hit, &candidate);
+    return end_test(q, hit, &candidate, NULL, 0);
 }
 
-bool rgi_query_enter(rgi_query *q, uint32_t slot, rgi_mesh_ray *inside) {
+bool rgi_query_enter(rgi_query *q, uint32_t slot, rgi_mesh_lanes *l) {
     const rg_scene *scene = q->call->scene;
     const rgi_object *object = rgi_scene_object(scene, slot);
-    return begin_test(q, slot, object) &&
-           rgi_object_local(object, rgi_scene_linear(scene, object), &q->ray, &q->local) &&
-           rgi_mesh_begin(inside, object->shape->of.mesh, &q->local);
+    if (!begin_test(q, slot, object)) return false;
+    rgi_mesh_row *row = &l->rows[l->count / RGI_PACKET];
+    uint32_t lane = l->count++ % RGI_PACKET;
+    for (int a = 0; a < 3; a++) {
+        row->rays.origin[a][lane] = q->ray.origin[a];
+        row->rays.direction[a][lane] = q->ray.direction[a];
+    }
+    row->rays.dd[lane] = q->ray.dd;
+    row->rays.t_min[lane] = q->local.t_min;
+    row->rays.t_max[lane] = q->walk.t_max;
+    row->inside.mesh[lane] = object->shape->of.mesh;
+    row->inside.contexts[lane] = q;
+    rgi_mesh_door(&row->doors, lane, object, rgi_scene_linear(scene, object));
+    return true;
 }
 
-bool rgi_query_leave(rgi_query *q, const rgi_mesh_ray *inside) {
-    return end_test(q, inside->triangles.found, &inside->triangles.best);
+bool rgi_query_leave(rgi_query *q, const rgi_mesh_lanes *l, uint32_t lane) {
+    const rgi_mesh_packet *m = &l->rows[lane / RGI_PACKET].inside;
+    lane %= RGI_PACKET;
+    rgi_candidate candidate = {.t = m->t_max[lane]};
+    bool hit = m->found >> lane & 1;
+    if (hit) candidate.primitive = rgi_mesh_primitive(m->mesh[lane], m->leaf[lane], m->triangle[lane]);
+    return end_test(q, hit, &candidate, m->leaf[lane], m->triangle[lane]);
 }
 
-bool rgi_query_take(rgi_query *q, uint32_t slot, const rgi_candidate *candidate) {
+bool rgi_query_take(rgi_query *q, uint32_t slot, double t, const void *leaf, uint32_t triangle) {
+    rgi_candidate candidate = {.t = t};
     q->testing = rgi_scene_object(q->call->scene, slot);
     q->testing_id = rgi_object_id(q->testing, slot);
-    return end_test(q, true, candidate);
+    candidate.primitive = rgi_mesh_primitive(q->testing->shape->of.mesh, leaf, triangle);
+    return end_test(q, true, &candidate, leaf, triangle);
 }
 
-bool rgi_query_recall(rgi_query *q, uint32_t slot, const void *leaf, uint32_t triangle) {
-    const rgi_object *object = rgi_scene_object(q->call->scene, slot);
-    rgi_candidate candidate;
+/* The rest of a hit in a mesh. */
+static void complete(const rgi_query *q, rgi_candidate *candidate) {
+    rgi_local_ray local;
     rgi_triangle_ray ray;
     /* It does not pass the object by: it hits it. */
-    (void)rgi_object_local(object, rgi_scene_linear(q->call->scene, object), &q->ray, &q->local);
-    rgi_triangle_ray_init(&ray, &q->local);
-    (void)rgi_triangle_meets(&ray, object->shape->of.mesh, leaf, triangle, &candidate);
-    return rgi_query_take(q, slot, &candidate);
+    (void)rgi_object_local(q->object, rgi_scene_linear(q->call->scene, q->object), &q->ray, &local);
+    local.t_max = q->best.t;
+    rgi_triangle_ray_init(&ray, &local);
+    (void)rgi_triangle_meets(&ray, q->object->shape->of.mesh, q->leaf, q->triangle, candidate);
 }
 
 uint32_t rgi_query_sides(const rgi_call *c) {
@@ -180,7 +200,10 @@ void rgi_query_write(const rgi_query *q) {
     uint64_t i = q->index;
     rg_hit hit;
     if (q->valid && q->found && !q->failed) {
-        hit_record(q, q->object, q->id, &q->best, q->call->wanted, &hit);
+        rgi_candidate best = q->best;
+        if (q->leaf && (q->call->plain_hits || q->call->wanted & RGI_NORMAL || v->u.data || v->v.data))
+            complete(q, &best);
+        hit_record(q, q->object, q->id, &best, q->call->wanted, &hit);
     } else {
         memset(&hit, 0, sizeof hit);
         hit.t = q->valid && !q->failed ? INFINITY : NAN;

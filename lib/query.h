@@ -43,6 +43,8 @@ typedef struct rgi_query {
     rg_object id;
     const rgi_object *object;
     rgi_candidate best;
+    const void *leaf; /* NULL; or where the best was met in a mesh, of which only t and primitive are known yet */
+    uint32_t triangle;
 } rgi_query;
 
 /** The sides of surfaces that count in a call. */
@@ -63,16 +65,13 @@ void rgi_query_begin(rgi_query *query, uint64_t index);
  */
 bool rgi_query_visit(void *context, uint32_t slot);
 
-/** The same for an object that is a mesh, in two steps: false if the ray passes it by, else the ray is to be taken
- * through it and to leave, which returns true if nothing more is wanted. */
-bool rgi_query_enter(rgi_query *query, uint32_t slot, rgi_mesh_ray *inside);
-bool rgi_query_leave(rgi_query *query, const rgi_mesh_ray *inside);
+/** The same for an object that is a mesh, in two steps: false if the ray does not see it, else it has taken a lane,
+ * is to be taken through and to leave, which returns true if nothing more is wanted. */
+bool rgi_query_enter(rgi_query *query, uint32_t slot, rgi_mesh_lanes *lanes);
+bool rgi_query_leave(rgi_query *query, const rgi_mesh_lanes *lanes, uint32_t lane);
 
-/** Takes a hit on a triangle of a mesh that is known to be the nearest so far. */
-bool rgi_query_recall(rgi_query *query, uint32_t slot, const void *leaf, uint32_t triangle);
-
-/** Takes a hit that was found another way. Returns true if nothing more is wanted. */
-bool rgi_query_take(rgi_query *query, uint32_t slot, const rgi_candidate *candidate);
+/** Takes a hit on a triangle of a mesh that was found another way. Returns true if nothing more is wanted. */
+bool rgi_query_take(rgi_query *query, uint32_t slot, double t, const void *leaf, uint32_t triangle);
 
 /** Writes what is wanted of the ray. */
 void rgi_query_write(const rgi_query *query);

@@ -76,13 +76,15 @@ static void visit_unbounded(rgi_query *q, const rgi_lattice *lattice) {
 
 static rgi_entered enter(rgi_beam *beam, uint32_t slot) {
     rgi_query *q = beam->query;
-    if (rgi_scene_object(q->call->scene, slot)->shape->kind != RG_SHAPE_MESH) return RGI_NO_MESH_THERE;
-    return rgi_query_enter(q, slot, beam->room) ? RGI_ENTERED : RGI_PASSED_BY;
+    const rg_shape *shape = rgi_scene_object(q->call->scene, slot)->shape;
+    if (shape->kind != RG_SHAPE_MESH || shape->of.mesh->levels > RGI_MESH_LEVELS) return RGI_NO_MESH_THERE;
+    beam->lanes->beams[beam->lanes->count] = beam;
+    return rgi_query_enter(q, slot, beam->lanes) ? RGI_AT_DOOR : RGI_PASSED_BY;
 }
 
-static bool leave(rgi_beam *beam) {
+static bool leave(rgi_beam *beam, uint32_t lane) {
     rgi_query *q = beam->query;
-    q->done = rgi_query_leave(q, beam->room);
+    q->done = rgi_query_leave(q, beam->lanes, lane);
     beam->t_max = rgi_beam_above(&beam->scale, beam->pad, q->walk.t_max);
     return q->done;
 }
@@ -90,9 +92,21 @@ static bool leave(rgi_beam *beam) {
 /* Rays side by side, in meshes, too: those take much of the stack. */
 static __attribute__((noinline)) void trace_some_into_meshes(const rgi_call *c, const rgi_lattice *lattice,
                                                              rgi_beam *beams, uint32_t count) {
-    rgi_mesh_ray rooms[RGI_PACKET];
+    const rgi_query *first = beams[0].query;
+    rgi_mesh_lanes lanes;
+    lanes.count = 0;
+    for (uint32_t r = 0; r < RGI_SIDE_BY_SIDE / RGI_PACKET; r++) {
+        rgi_mesh_row *row = &lanes.rows[r];
+        row->inside.rays.any = c->any;
+        row->inside.changed = 0;
+        row->inside.sides = first->local.sides;
+        row->inside.accept = first->local.accept;
+        /* All lanes of a row are computed, used or not. */
+        memset(&row->rays, 0, sizeof row->rays);
+        memset(&row->doors, 0, sizeof row->doors);
+    }
     for (uint32_t i = 0; i < count; i++) {
-        beams[i].room = &rooms[i];
+        beams[i].lanes = &lanes;
         beams[i].enter = enter;
         beams[i].leave = leave;
     }
@@ -227,7 +241,7 @@ static rgi_query *query_of(group *g, uint32_t i) {
     q->ray.mask = b->mask[i];
     if (g->known.rays >> i & 1) {
         g->known.rays &= ~(1u << i);
-        (void)rgi_query_recall(q, g->known.slot[i], g->known.leaf[i], g->known.triangle[i]);
+        (void)rgi_query_take(q, g->known.slot[i], g->known.t[i], g->known.leaf[i], g->known.triangle[i]);
     }
     return q;
 }
@@ -276,10 +290,8 @@ static void take_from_mesh(group *g, const rgi_mesh_packet *m, uint32_t ray, uin
     known *k = &g->known;
     rgi_packet *p = &g->packet;
     if (g->made >> ray & 1) {
-        rgi_candidate candidate;
         rgi_query *q = &g->queries[ray];
-        rgi_mesh_packet_describe(m, ray, m->leaf[ray], m->triangle[ray], &candidate);
-        q->done = rgi_query_take(q, slot, &candidate);
+        q->done = rgi_query_take(q, slot, m->t_max[ray], m->leaf[ray], m->triangle[ray]);
         note_found(p, ray, q);
         return;
     }
@@ -294,32 +306,37 @@ static void take_from_mesh(group *g, const rgi_mesh_packet *m, uint32_t ray, uin
     k->slot[ray] = slot;
     k->leaf[ray] = m->leaf[ray];
     k->triangle[ray] = m->triangle[ray];
-    k->primitive[ray] = rgi_mesh_primitive(m->mesh, m->leaf[ray], m->triangle[ray]);
+    k->primitive[ray] = rgi_mesh_primitive(m->mesh[ray], m->leaf[ray], m->triangle[ray]);
     p->found |= 1u << ray;
     p->t_hi[ray] = rgi_beam_above(&scale, p->pad[ray], k->t[ray]);
     p->t_lo[ray] = rgi_beam_below(&scale, p->pad[ray], k->t[ray]);
 }
 
-/* What a kernel asks for several rays of a packet about a mesh: they go through it together, if they can. */
+/* What a kernel asks for several rays of a packet about a mesh: they go through it together, if they can, or side by
+ * side. */
 static bool ask_mesh(rgi_packet *p, uint32_t rays, uint32_t slot) {
     group *g = p->context;
     const rg_scene *scene = g->call->scene;
     const rgi_object *object = rgi_scene_object(scene, slot);
-    rgi_mesh_packet m;
-    if (object->shape->kind != RG_SHAPE_MESH || g->call->config.filter) return false;
+    if (object->shape->kind != RG_SHAPE_MESH || object->shape->of.mesh->levels > RGI_MESH_LEVELS) return false;
+    if (g->call->config.filter) return false;
+    rgi_mesh_lanes lanes;
+    rgi_mesh_packet *m = &lanes.rows[0].inside;
     ask_certain(p, rays);
-    scene->kernels->mesh_enter(&g->bundle, object, rgi_scene_linear(scene, object), &m);
-    m.rays.active = join_mesh(g, object, rays & p->active, &m);
-    m.rays.any = g->call->any;
-    m.sides = rgi_query_sides(g->call);
-    if (!m.rays.active) return true;
-    if (!scene->kernels->mesh_packet(&m)) return false;
+    rays &= scene->kernels->mesh_enter(&g->bundle, object, rgi_scene_linear(scene, object), m);
+    lanes.rows[1].inside.changed = 0;
+    m->rays.active = join_mesh(g, object, rays & p->active, m);
+    m->rays.any = g->call->any;
+    m->sides = rgi_query_sides(g->call);
+    m->accept = NULL;
+    if (!m->rays.active) return true;
+    if (!scene->kernels->mesh_packet(m)) scene->kernels->mesh_apart(&lanes);
     if (g->call->any) {
-        p->certain |= m.found;
-        p->active &= ~m.found;
+        p->certain |= m->found;
+        p->active &= ~m->found;
         return true;
     }
-    for (uint32_t rest = m.found; rest; rest &= rest - 1) take_from_mesh(g, &m, (uint32_t)__builtin_ctz(rest), slot);
+    for (uint32_t rest = m->found; rest; rest &= rest - 1) take_from_mesh(g, m, (uint32_t)__builtin_ctz(rest), slot);
     return true;
 }
 
@@ -450,11 +467,10 @@ static void begin(group *g, const course *way) {
     if (g->lattice->unbounded_count) ask_unbounded(g, p);
 }
 
-/* Each ray its own way. */
-static void go_apart(group *g) {
+/* Beams for the rays of a group that are still on their way. Returns how many. */
+static uint32_t set_apart(group *g, rgi_beam *beams) {
     const rgi_call *c = g->call;
     rgi_packet *p = &g->packet;
-    rgi_beam beams[RGI_PACKET];
     uint32_t used = 0;
     /* What a packet that was given up has found is asked first. */
     for (uint32_t rays = c->any ? 0 : p->certain; rays; rays &= rays - 1) {
@@ -470,9 +486,17 @@ static void go_apart(group *g) {
         beams[used].any = c->any && !asks_all(c) && g->bundle.mask[i];
         beams[used++].query = query_of(g, i);
     }
-    trace_beams(c, g->lattice, beams, used);
     g->waits = false;
     g->together = c->any; /* what is certain needs no query */
+    return used;
+}
+
+/* Each ray of the groups that wait its own way: the beams are not to take stack of other ways. */
+static __attribute__((noinline)) void go_apart(group *groups, uint32_t count) {
+    rgi_beam beams[RGI_SIDE_BY_SIDE];
+    uint32_t used = 0;
+    for (uint32_t i = 0; i < count; i++) used += groups[i].waits ? set_apart(&groups[i], beams + used) : 0;
+    if (used) trace_beams(groups[0].call, groups[0].lattice, beams, used);
 }
 
 /* Whether groups can go together, as a frustum. */
@@ -517,8 +541,8 @@ static void go_narrow(group *groups, uint32_t count, course *way) {
         kernels->trace_frustum(way->lattice, &frusta[united[1]]);
     for (uint32_t i = 0; i < count; i++) {
         if (united[i]) note_try(&way->narrow, !has_arrived(&frusta[i], &groups[i]));
-        if (groups[i].waits) go_apart(&groups[i]);
     }
+    go_apart(groups, count);
 }
 
 /* Writes what became of the rays. */

@@ -378,13 +378,23 @@ static void *trace_calls_of_all_sizes(void *hits) {
 /* What raygrid/trace.h says of the stack; sanitizers take more. */
 START_TEST(a_trace_fits_on_a_small_stack) {
     static rg_hit hits[600];
+    static const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const uint16_t sides[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    const rg_mesh_views views = {.size = sizeof views,
+                                 .vertices = rg_input3_packed(corners, sizeof *corners, RG_F32),
+                                 .vertex_count = 4,
+                                 .indices = rg_input3_packed(sides, sizeof *sides, RG_U16),
+                                 .triangle_count = 4};
     pthread_attr_t attributes;
     pthread_t thread;
+    rg_shape *mesh;
+    ck_assert_int_eq(rg_shape_create_mesh(NULL, &views, &mesh), RG_OK);
     for (int i = 0; i < 400; i++) {
         rg_pose pose = rg_pose_at(unit_random(), unit_random(), unit_random());
         pose.scale = 0.05;
-        ck_assert_int_eq(rg_scene_insert(scene, ball, &pose, NULL), RG_OK);
+        ck_assert_int_eq(rg_scene_insert(scene, i % 2 ? mesh : ball, &pose, NULL), RG_OK);
     }
+    rg_shape_release(&mesh);
     pthread_attr_init(&attributes);
     ck_assert_int_eq(pthread_attr_setstacksize(&attributes, 128 * 1024), 0);
     ck_assert_int_eq(pthread_create(&thread, &attributes, trace_calls_of_all_sizes, hits), 0);
