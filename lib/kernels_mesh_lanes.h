@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The part of the kernels for rays side by side in meshes, each on its own way; included by kernels.h alone.
- *
- * All take a step in turn, so that waits for memory overlap. Whether a ray comes to a node or to a leaf, and whether
- * it may meet a triangle there, can't be foreseen: so rays are sorted into those at nodes and those at leaves, by
- * adding comparisons to counts, and each sort is gone through without such branches.
+ * The part of the kernels for rays side by side in meshes, each on its own way; included by kernels.h alone. All take
+ * a step in turn, so that waits for memory overlap.
  */
 
-/* Rays, by their lanes. One more is written behind the last than counts. */
+/* Rays that go on, by their lanes. One more is written behind the last than counts: it is not to be foreseen which.
+ */
 typedef struct lane_list {
     uint32_t count;
     uint8_t lanes[RGI_SIDE_BY_SIDE + 1];
@@ -83,51 +81,37 @@ static void cut_way(rgi_mesh_lanes *l, uint32_t lane) {
     l->depth[lane] = kept;
 }
 
-/* Rays at leaves with the triangles that each may meet: those that have a nearer hit then end there. */
-static void settle_side_by_side(rgi_mesh_lanes *l, const lane_list *meeting, const void *const *leaves,
-                                const uint32_t *met) {
-    for (uint32_t k = 0; k < meeting->count; k++) {
-        uint32_t lane = meeting->lanes[k];
-        test_triangles(&l->rows[lane / RGI_PACKET].inside, lane % RGI_PACKET, leaves[k], met[k]);
-    }
-    for (uint32_t r = 0; r < RGI_SIDE_BY_SIDE / RGI_PACKET; r++) {
-        rgi_mesh_packet *m = &l->rows[r].inside;
-        if (!m->changed) continue;
-        bound_above(m);
-        for (uint32_t rest = m->changed; rest; rest &= rest - 1)
-            cut_way(l, r * RGI_PACKET + (uint32_t)__builtin_ctz(rest));
-        m->changed = 0;
-    }
+/* Returns after a hit with the rest of the way cut. */
+RGI_INLINE void visit_leaf_of(rgi_mesh_lanes *l, uint32_t lane, rgi_mesh_ref ref) {
+    const uint32_t i = lane % RGI_PACKET;
+    rgi_mesh_packet *m = &l->rows[lane / RGI_PACKET].inside;
+    const void *leaf = rgi_mesh_at(m->mesh[i], ref);
+    uint32_t met = meet_leaf(m->mesh[i], leaf, &m->filters[i]);
+    fetch_next(l, lane, m->mesh[i]);
+    if (!met) return;
+    test_triangles(m, i, leaf, met);
+    if (!m->changed) return;
+    const rgi_beam_scale scale = {m->rays.shift[i], m->rays.length[i]};
+    m->changed = 0;
+    m->rays.t_hi[i] = rgi_beam_above(&scale, m->rays.pad[i], m->t_max[i]);
+    cut_way(l, lane);
 }
 
-/* One step of all listed; lists those that go on. */
-static void step_side_by_side(rgi_mesh_lanes *l, lane_list *list) {
-    rgi_mesh_ref at[RGI_SIDE_BY_SIDE];
-    const void *met_leaves[RGI_SIDE_BY_SIDE + 1];
-    uint32_t met[RGI_SIDE_BY_SIDE + 1];
-    lane_list nodes, leaves, meeting;
-    nodes.count = leaves.count = meeting.count = 0;
-    for (uint32_t k = 0; k < list->count; k++) {
-        uint32_t lane = list->lanes[k];
-        at[lane] = l->refs[lane][--l->depth[lane]];
-        list_lane(&nodes, lane, !(at[lane] & RGI_MESH_LEAF));
-        list_lane(&leaves, lane, (at[lane] & RGI_MESH_LEAF) != 0);
+/* Takes all listed to the ends of their ways. */
+static void go_side_by_side(rgi_mesh_lanes *l, lane_list *list) {
+    while (list->count) {
+        uint32_t count = list->count;
+        list->count = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            uint32_t lane = list->lanes[k];
+            rgi_mesh_ref ref = l->refs[lane][--l->depth[lane]];
+            if (ref & RGI_MESH_LEAF)
+                visit_leaf_of(l, lane, ref);
+            else
+                visit_node_of(l, lane, ref);
+            list_lane(list, lane, l->depth[lane] > 0);
+        }
     }
-    list->count = 0;
-    for (uint32_t k = 0; k < nodes.count; k++) {
-        visit_node_of(l, nodes.lanes[k], at[nodes.lanes[k]]);
-        list_lane(list, nodes.lanes[k], l->depth[nodes.lanes[k]] > 0);
-    }
-    for (uint32_t k = 0; k < leaves.count; k++) {
-        const uint32_t lane = leaves.lanes[k], i = lane % RGI_PACKET, m = meeting.count;
-        const rgi_mesh_packet *inside = &l->rows[lane / RGI_PACKET].inside;
-        met_leaves[m] = rgi_mesh_at(inside->mesh[i], at[lane]);
-        met[m] = meet_leaf(inside->mesh[i], met_leaves[m], &inside->filters[i]);
-        fetch_next(l, lane, inside->mesh[i]);
-        list_lane(&meeting, lane, met[m] != 0);
-    }
-    if (meeting.count) settle_side_by_side(l, &meeting, met_leaves, met);
-    for (uint32_t k = 0; k < leaves.count; k++) list_lane(list, leaves.lanes[k], l->depth[leaves.lanes[k]] > 0);
 }
 
 /* Takes the rays through the meshes at whose doors they are. */
@@ -141,12 +125,12 @@ static void mesh_side_by_side(rgi_mesh_lanes *l) {
         memcpy(row->inside.t_max, row->rays.t_max, sizeof row->inside.t_max);
         begin_side_by_side(l, first / RGI_PACKET, &list);
     }
-    while (list.count) step_side_by_side(l, &list);
+    go_side_by_side(l, &list);
 }
 
 static void mesh_apart(rgi_mesh_lanes *l) {
     lane_list list;
     list.count = 0;
     begin_side_by_side(l, 0, &list);
-    while (list.count) step_side_by_side(l, &list);
+    go_side_by_side(l, &list);
 }

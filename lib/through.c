@@ -324,7 +324,6 @@ static bool ask_mesh(rgi_packet *p, uint32_t rays, uint32_t slot) {
     rgi_mesh_packet *m = &lanes.rows[0].inside;
     ask_certain(p, rays);
     rays &= scene->kernels->mesh_enter(&g->bundle, object, rgi_scene_linear(scene, object), m);
-    lanes.rows[1].inside.changed = 0;
     m->rays.active = join_mesh(g, object, rays & p->active, m);
     m->rays.any = g->call->any;
     m->sides = rgi_query_sides(g->call);
