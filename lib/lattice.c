@@ -432,8 +432,12 @@ rgi_middle rgi_lattice_middle(const rgi_lattice *lattice) {
         m.extent += rgi_max(fabs((double)lattice->lo[a]), fabs((double)lattice->hi[a]));
     }
     m.radius = sqrt(rgi_dot(half, half));
-    m.spacing = inverse_cube_root((float)(lattice->count + 1));
+    m.spacing = 0;
     return m;
+}
+
+float rgi_lattice_spacing(const rgi_lattice *lattice) {
+    return inverse_cube_root((float)(lattice->count + 1));
 }
 
 void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]) {

@@ -202,8 +202,11 @@ bool rgi_lattice_has_cell(const rgi_lattice *lattice, const rgi_location *place,
 /** Makes room for so many more that have no cell. */
 rg_result rgi_lattice_reserve(rgi_lattice *lattice, uint64_t unbounded);
 
-/** The middle of what has a cell. */
+/** The middle of what has a cell, but for the spacing. */
 rgi_middle rgi_lattice_middle(const rgi_lattice *lattice);
+
+/** See rgi_middle: only rays that go together need it. */
+float rgi_lattice_spacing(const rgi_lattice *lattice);
 
 /** A world box around all that has a cell; lo > hi if there is nothing. */
 void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]);

@@ -184,19 +184,19 @@ void rgi_query_reset(rgi_query *q, uint64_t index) {
 void rgi_query_begin(rgi_query *q, uint64_t index) {
     const rgi_call *c = q->call;
     double origin[3], direction[3];
-    rgi_load3(&c->rays.origin, index, origin);
-    rgi_load3(&c->rays.direction, index, direction);
+    rgi_load3(&c->rays->origin, index, origin);
+    rgi_load3(&c->rays->direction, index, direction);
     rgi_query_reset(q, index);
-    q->valid = rgi_ray_init(&q->ray, origin, direction, rgi_load(&c->rays.t_min, index, 0),
-                            rgi_load(&c->rays.t_max, index, INFINITY),
-                            (uint32_t)rgi_load_integer(&c->rays.mask, index, UINT32_MAX));
+    q->valid = rgi_ray_init(&q->ray, origin, direction, rgi_load(&c->rays->t_min, index, 0),
+                            rgi_load(&c->rays->t_max, index, INFINITY),
+                            (uint32_t)rgi_load_integer(&c->rays->mask, index, UINT32_MAX));
     q->done = !q->valid;
     q->local.t_min = q->ray.t_min;
     q->walk.t_max = q->ray.t_max;
 }
 
 void rgi_query_write(const rgi_query *q) {
-    const rg_hit_views *v = &q->call->hits;
+    const rg_hit_views *v = q->call->hits;
     uint64_t i = q->index;
     rg_hit hit;
     if (q->valid && q->found && !q->failed) {

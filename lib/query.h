@@ -15,11 +15,11 @@ enum { RGI_POSITION = 1, RGI_NORMAL = 2, RGI_OFFSET = 4, RGI_ALL = 7 };
 typedef struct rgi_call {
     rg_scene *scene;
     rg_trace_config config;
-    rg_ray_views rays;
-    rg_hit_views hits;  /* closest hit by views */
-    rg_hit *plain_hits; /* closest hit, plain: then the views are empty */
-    unsigned wanted;    /* of the hits */
-    rg_output occluded; /* any hit */
+    const rg_ray_views *rays;
+    const rg_hit_views *hits; /* closest hit by views */
+    rg_hit *plain_hits;       /* closest hit, plain: then the views are empty */
+    unsigned wanted;          /* of the hits */
+    rg_output occluded;       /* any hit */
     bool any;
     uint64_t count;
     uint64_t invalid; /* atomic */

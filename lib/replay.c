@@ -248,8 +248,7 @@ static rg_result play(rg_replay *replay, const rgi_stream_record *record, rg_rep
                                       play_grid,      play_grid,     play_grid,        play_replace};
     const uint32_t calls =
         replay->loader.reader.version == 1 ? CALLS_OF_VERSION_1 : (uint32_t)(sizeof players / sizeof *players);
-    if (record->kind == RG_CALL_NONE || record->kind >= calls)
-        return wrong(record, "a record of no known kind");
+    if (record->kind == RG_CALL_NONE || record->kind >= calls) return wrong(record, "a record of no known kind");
     r->call = (rg_call)record->kind;
     rg_result result = players[record->kind](replay, record, r);
     if (!result) replay->calls++;

@@ -36,6 +36,12 @@ rg_result rgi_struct_read(void *known, size_t known_size, size_t least, const vo
     return RG_OK;
 }
 
+rg_result rgi_struct_view(const void *given, void *room, size_t known_size, size_t least, const char *name,
+                          const void **view) {
+    *view = given && size_field(given) == known_size ? given : room;
+    return *view == given ? RG_OK : rgi_struct_read(room, known_size, least, given, name);
+}
+
 rg_result rgi_struct_write(const void *known, size_t known_size, size_t least, void *given, const char *name) {
     if (!given) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", name);
     size_t size = size_field(given);

@@ -12,6 +12,10 @@
  */
 rg_result rgi_struct_read(void *known, size_t known_size, size_t least, const void *given, const char *name);
 
+/** The same without a copy where the caller's struct has just the fields that are known: *view is that, or `room`. */
+rg_result rgi_struct_view(const void *given, void *room, size_t known_size, size_t least, const char *name,
+                          const void **view);
+
 /** Copies the first bytes of `known` to the caller's struct, as many as both have; its size field stays. */
 rg_result rgi_struct_write(const void *known, size_t known_size, size_t least, void *given, const char *name);
 

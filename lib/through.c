@@ -128,21 +128,21 @@ static void trace_beams(const rgi_call *c, const rgi_lattice *lattice, rgi_beam 
     }
 }
 
-static void through_lattice(group *g, const rgi_lattice *lattice) {
+static void through_lattice(const rgi_call *c, rgi_query *queries, uint32_t count, const rgi_lattice *lattice) {
     rgi_beam beams[RGI_PACKET];
     const rgi_middle middle = rgi_lattice_middle(lattice);
     uint32_t used = 0;
-    for (uint32_t i = 0; i < g->count; i++) {
-        rgi_query *q = &g->queries[i];
+    for (uint32_t i = 0; i < count; i++) {
+        rgi_query *q = &queries[i];
         rgi_beam *beam = &beams[used];
         if (!q->done) visit_unbounded(q, lattice);
         if (q->done || !lattice->root || !rgi_beam_init(beam, lattice, &middle, &q->ray, q->walk.t_max)) continue;
         beam->ask = ask;
         beam->query = q;
-        beam->any = g->call->any && !asks_all(g->call) && q->ray.mask;
+        beam->any = c->any && !asks_all(c) && q->ray.mask;
         used++;
     }
-    trace_beams(g->call, lattice, beams, used);
+    trace_beams(c, lattice, beams, used);
 }
 
 static void through_cells(rgi_query *q, const rgi_grid *grid) {
@@ -155,19 +155,18 @@ static void through_cells(rgi_query *q, const rgi_grid *grid) {
     q->walk.cells += cells;
 }
 
-static void each_through_grids(group *g) {
-    const rg_scene *scene = g->call->scene;
-    for (uint32_t i = 0; i < g->count; i++) rgi_query_begin(&g->queries[i], g->first + i);
-    g->made = UINT32_MAX;
+static void each_through_grids(const rgi_call *c, rgi_query *queries, uint64_t first, uint32_t count) {
+    const rg_scene *scene = c->scene;
+    for (uint32_t i = 0; i < count; i++) rgi_query_begin(&queries[i], first + i);
     for (uint32_t n = 0; n < scene->grid_places; n++) {
         const rgi_any_grid *grid = scene->grids[n].grid;
         if (!grid || !grid->count) continue;
         if (rgi_any_grid_is_loose(grid)) {
-            through_lattice(g, &grid->lattice);
+            through_lattice(c, queries, count, &grid->lattice);
             continue;
         }
-        for (uint32_t i = 0; i < g->count; i++) {
-            if (!g->queries[i].done) through_cells(&g->queries[i], &grid->cells);
+        for (uint32_t i = 0; i < count; i++) {
+            if (!queries[i].done) through_cells(&queries[i], &grid->cells);
         }
     }
 }
@@ -202,7 +201,7 @@ static void load_lanes(const rg_input *view, uint64_t first, uint32_t count, dou
 
 /* Reads the rays. Returns whether they are neither invalid nor extreme. */
 static bool load(group *g) {
-    const rg_ray_views *rays = &g->call->rays;
+    const rg_ray_views *rays = g->call->rays;
     rgi_bundle *b = &g->bundle;
     const void *const origins[3] = {rays->origin.x, rays->origin.y, rays->origin.z};
     const void *const directions[3] = {rays->direction.x, rays->direction.y, rays->direction.z};
@@ -351,7 +350,7 @@ static void ask_unbounded(group *g, rgi_packet *p) {
 
 /* Whether of a hit no more is wanted than what rgi_meeting has. */
 static bool wants_little(const rgi_call *c) {
-    return !c->plain_hits && !(c->wanted & ~(unsigned)RGI_NORMAL) && !c->hits.u.data && !c->hits.v.data;
+    return !c->plain_hits && !(c->wanted & ~(unsigned)RGI_NORMAL) && !c->hits->u.data && !c->hits->v.data;
 }
 
 /* Where the rays meet the balls that are certain: for all at once. Returns the bits of those it is right for. */
@@ -376,9 +375,9 @@ static void write_known(const group *g, uint32_t i) {
     const rgi_call *c = g->call;
     const known *k = &g->known;
     rgi_object *object = rgi_scene_object(c->scene, k->slot[i]);
-    rgi_store(&c->hits.t, g->first + i, k->t[i] * g->bundle.to_world[i] * g->bundle.to_world2[i]);
-    rgi_store_integer(&c->hits.object, g->first + i, rgi_object_id(object, k->slot[i]));
-    rgi_store_integer(&c->hits.primitive, g->first + i, k->primitive[i]);
+    rgi_store(&c->hits->t, g->first + i, k->t[i] * g->bundle.to_world[i] * g->bundle.to_world2[i]);
+    rgi_store_integer(&c->hits->object, g->first + i, rgi_object_id(object, k->slot[i]));
+    rgi_store_integer(&c->hits->primitive, g->first + i, k->primitive[i]);
 }
 
 /* Writes the hits that are certain, or known, and the misses of rays that asked nothing. Returns their bits. */
@@ -398,13 +397,13 @@ static uint32_t write_unasked(const group *g, const rgi_packet *p) {
             write_known(g, i);
             continue;
         }
-        rgi_store(&c->hits.t, g->first + i, hit ? m.t[i] : INFINITY);
-        rgi_store_integer(&c->hits.object, g->first + i, hit ? ids[i] : RG_NO_OBJECT);
-        rgi_store_integer(&c->hits.primitive, g->first + i, hit ? 0 : RG_NO_PRIMITIVE);
+        rgi_store(&c->hits->t, g->first + i, hit ? m.t[i] : INFINITY);
+        rgi_store_integer(&c->hits->object, g->first + i, hit ? ids[i] : RG_NO_OBJECT);
+        rgi_store_integer(&c->hits->primitive, g->first + i, hit ? 0 : RG_NO_PRIMITIVE);
         if (hit && c->wanted)
-            rgi_store3(&c->hits.normal, g->first + i, m.normal[0][i], m.normal[1][i], m.normal[2][i]);
+            rgi_store3(&c->hits->normal, g->first + i, m.normal[0][i], m.normal[1][i], m.normal[2][i]);
         else
-            rgi_store3(&c->hits.normal, g->first + i, 0, 0, 0);
+            rgi_store3(&c->hits->normal, g->first + i, 0, 0, 0);
     }
     return written;
 }
@@ -451,7 +450,8 @@ static void begin(group *g, const course *way) {
     g->together = false;
     g->waits = g->lattice && load(g);
     if (!g->waits) {
-        each_through_grids(g);
+        each_through_grids(g->call, g->queries, g->first, g->count);
+        g->made = UINT32_MAX;
         return;
     }
     g->call->scene->kernels->to_frame(&g->bundle, g->lattice, &way->middle, p);
@@ -544,19 +544,20 @@ static void go_narrow(group *groups, uint32_t count, course *way) {
     go_apart(groups, count);
 }
 
-/* Writes what became of the rays. */
+/* Writes what became of a ray. */
+static void finish_query(const rgi_query *q, uint64_t *invalid, bool *failed) {
+    *invalid += !q->valid;
+    *failed |= q->failed;
+    if (q->call->any)
+        rgi_store_integer(&q->call->occluded, q->index, q->valid && q->found && !q->failed);
+    else
+        rgi_query_write(q);
+}
+
 static void finish(group *g, uint64_t *invalid, bool *failed) {
-    const rgi_call *c = g->call;
     uint32_t written = g->together ? finish_packet(g, &g->packet) : 0;
     for (uint32_t i = 0; i < g->count; i++) {
-        if (written >> i & 1) continue;
-        const rgi_query *q = query_of(g, i);
-        *invalid += !q->valid;
-        *failed |= q->failed;
-        if (c->any)
-            rgi_store_integer(&c->occluded, q->index, q->valid && q->found && !q->failed);
-        else
-            rgi_query_write(q);
+        if (!(written >> i & 1)) finish_query(query_of(g, i), invalid, failed);
     }
 }
 
@@ -565,8 +566,11 @@ static void init(course *way, group *groups, uint32_t room, const rgi_call *c, u
     memset(way, 0, sizeof *way);
     way->call = c;
     way->lattice = rays < MIN_PACKET ? NULL : only_lattice(c->scene);
-    if (way->lattice) way->middle = rgi_lattice_middle(way->lattice);
-    way->apart = c->hits.cells.data || c->hits.tests.data || c->config.coherence == RG_COHERENCE_LOW;
+    if (way->lattice) {
+        way->middle = rgi_lattice_middle(way->lattice);
+        way->middle.spacing = rgi_lattice_spacing(way->lattice);
+    }
+    way->apart = c->hits->cells.data || c->hits->tests.data || c->config.coherence == RG_COHERENCE_LOW;
     /* Then rays may spread as they like to count as going the same way. */
     if (c->config.coherence == RG_COHERENCE_HIGH) way->middle.spacing = INFINITY;
     for (uint32_t n = 0; n < room; n++) {
@@ -583,8 +587,16 @@ static uint64_t next_rays(group *g, const course *way, uint64_t at, uint64_t las
     return at + g->count;
 }
 
+static __attribute__((noinline)) void through_alone(rgi_call *c, uint64_t index, uint64_t *invalid, bool *failed) {
+    rgi_query q;
+    rgi_query_init(&q, c);
+    each_through_grids(c, &q, index, 1);
+    finish_query(&q, invalid, failed);
+}
+
 /* A few rays, on a small stack. */
-static void through_one(rgi_call *c, uint64_t first, uint64_t last, uint64_t *invalid, bool *failed) {
+static __attribute__((noinline)) void through_one(rgi_call *c, uint64_t first, uint64_t last, uint64_t *invalid,
+                                                  bool *failed) {
     course way;
     group g;
     init(&way, &g, 1, c, last - first);
@@ -612,7 +624,9 @@ static uint64_t through_many(rgi_call *c, uint64_t first, uint64_t last, bool ma
 uint64_t rgi_through(rgi_call *c, uint64_t first, uint64_t last, bool may_stop) {
     uint64_t invalid = 0;
     bool failed = false;
-    if (last - first <= RGI_PACKET) {
+    if (last - first == 1) {
+        through_alone(c, first++, &invalid, &failed);
+    } else if (last - first <= RGI_PACKET) {
         through_one(c, first, last, &invalid, &failed);
         first = last;
     } else {

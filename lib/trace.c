@@ -50,7 +50,6 @@ static void trace_all(rg_scene *scene, rgi_call *c) {
 }
 
 static rg_result run(rg_scene *scene, rgi_call *c) {
-    c->scene = scene;
     /* Small calls hold the lock from their begin to their end, which tells the same. */
     bool counted = c->count > RGI_PACKET;
     if (counted) __atomic_fetch_add(&scene->running, 1, __ATOMIC_ACQUIRE);
@@ -86,19 +85,34 @@ static rg_result check_call(const rg_scene *scene, uint64_t count) {
     return RG_OK;
 }
 
-static rg_result read_rays(rgi_call *c, const rg_trace_config *config, const rg_ray_views *rays, uint64_t count) {
-    memset(c, 0, sizeof *c);
+/* Nothing of views, and the defaults. */
+static void begin_call(rgi_call *c, rg_scene *scene, uint64_t count) {
+    static const rg_hit_views none;
+    c->scene = scene;
+    c->config = default_config;
+    c->hits = &none;
+    c->plain_hits = NULL;
+    c->wanted = 0;
+    c->any = false;
     c->count = count;
+    c->invalid = 0;
+    c->failed = 0;
+}
+
+/* `room`: for the views, if they are another version's. */
+static rg_result read_rays(rgi_call *c, const rg_trace_config *config, const rg_ray_views *rays, rg_ray_views *room) {
+    const void *view;
     if (!rays) return rgi_fail(RG_INVALID_ARGUMENT, "rays is NULL");
-    rg_result result = rgi_struct_read(&c->config, sizeof c->config, CONFIG_LEAST, config, "rg_trace_config");
-    if (!result) result = rgi_struct_read(&c->rays, sizeof c->rays, RAYS_LEAST, rays, "rg_ray_views");
+    rg_result result =
+        config ? rgi_struct_read(&c->config, sizeof c->config, CONFIG_LEAST, config, "rg_trace_config") : RG_OK;
+    if (!result) result = rgi_struct_view(rays, room, sizeof *room, RAYS_LEAST, "rg_ray_views", &view);
     if (result) return result;
-    const rg_ray_views *v = &c->rays;
+    const rg_ray_views *v = c->rays = view;
     if (c->config.cull < RG_CULL_NONE || c->config.cull > RG_CULL_FRONT)
         return rgi_fail(RG_INVALID_ARGUMENT, "cull is %d, which is no way to cull", (int)c->config.cull);
     if (c->config.coherence < RG_COHERENCE_UNKNOWN || c->config.coherence > RG_COHERENCE_HIGH)
         return rgi_fail(RG_INVALID_ARGUMENT, "coherence is %d, which is none", (int)c->config.coherence);
-    bool required = count > 0;
+    bool required = c->count > 0;
     result = rgi_check_view3(v->origin.x, v->origin.y, v->origin.z, v->origin.type, RGI_FLOATS, required, "origin");
     if (!result)
         result = rgi_check_view3(v->direction.x, v->direction.y, v->direction.z, v->direction.type, RGI_FLOATS,
@@ -109,21 +123,23 @@ static rg_result read_rays(rgi_call *c, const rg_trace_config *config, const rg_
     return result;
 }
 
-static rg_result read_hits(rgi_call *c, const rg_hit_views *hits) {
+static rg_result read_hits(rgi_call *c, const rg_hit_views *hits, rg_hit_views *room) {
+    const void *view;
     if (!hits) return rgi_fail(RG_INVALID_ARGUMENT, "hits is NULL");
-    rg_result result = rgi_struct_read(&c->hits, sizeof c->hits, HITS_LEAST, hits, "rg_hit_views");
+    rg_result result = rgi_struct_view(hits, room, sizeof *room, HITS_LEAST, "rg_hit_views", &view);
     if (result) return result;
-    const rg_hit_views *v = &c->hits;
-    const struct {
-        const rg_output *view;
-        unsigned types;
-        const char *name;
-    } outputs[] = {{&v->t, RGI_FLOATS, "t"},      {&v->object, RGI_U64, "object"},
-                   {&v->u, RGI_FLOATS, "u"},      {&v->primitive, RGI_U32 | RGI_U64, "primitive"},
-                   {&v->v, RGI_FLOATS, "v"},      {&v->offset, RGI_FLOATS, "offset"},
-                   {&v->cells, RGI_U32, "cells"}, {&v->tests, RGI_U32, "tests"}};
-    for (size_t i = 0; i < sizeof outputs / sizeof *outputs && !result; i++)
-        result = rgi_check_view(outputs[i].view->data, outputs[i].view->type, outputs[i].types, 0, outputs[i].name);
+    const rg_hit_views *v = c->hits = view;
+#define CHECK(field, types)                                                                                          \
+    if (!result) result = rgi_check_view(v->field.data, v->field.type, types, 0, #field)
+    CHECK(t, RGI_FLOATS);
+    CHECK(object, RGI_U64);
+    CHECK(primitive, RGI_U32 | RGI_U64);
+    CHECK(u, RGI_FLOATS);
+    CHECK(v, RGI_FLOATS);
+    CHECK(offset, RGI_FLOATS);
+    CHECK(cells, RGI_U32);
+    CHECK(tests, RGI_U32);
+#undef CHECK
     if (!result)
         result = rgi_check_view3(v->normal.x, v->normal.y, v->normal.z, v->normal.type, RGI_FLOATS, 0, "normal");
     if (!result)
@@ -137,17 +153,22 @@ static rg_result read_hits(rgi_call *c, const rg_hit_views *hits) {
 rg_result rg_scene_trace_views(rg_scene *scene, const rg_trace_config *config, const rg_ray_views *rays,
                                const rg_hit_views *hits, uint64_t count) {
     rgi_call c;
+    rg_ray_views ray_room;
+    rg_hit_views hit_room;
+    begin_call(&c, scene, count);
     rg_result result = check_call(scene, count);
-    if (!result) result = read_rays(&c, config, rays, count);
-    if (!result) result = read_hits(&c, hits);
+    if (!result) result = read_rays(&c, config, rays, &ray_room);
+    if (!result) result = read_hits(&c, hits, &hit_room);
     return result ? result : run(scene, &c);
 }
 
 rg_result rg_scene_occluded_views(rg_scene *scene, const rg_trace_config *config, const rg_ray_views *rays,
                                   const rg_output *occluded, uint64_t count) {
     rgi_call c;
+    rg_ray_views room;
+    begin_call(&c, scene, count);
     rg_result result = check_call(scene, count);
-    if (!result) result = read_rays(&c, config, rays, count);
+    if (!result) result = read_rays(&c, config, rays, &room);
     if (!result && !occluded) result = rgi_fail(RG_INVALID_ARGUMENT, "occluded is NULL");
     if (!result) result = rgi_check_view(occluded->data, occluded->type, RGI_U8, count > 0, "occluded");
     if (result) return result;
@@ -161,24 +182,31 @@ static rg_input plain(const void *data, rg_type type) {
     return view;
 }
 
+static rg_input3 plain3(const double at[3]) {
+    rg_input3 view = {at, at + 1, at + 2, sizeof(rg_ray), RG_F64};
+    return view;
+}
+
 /* The views of plain rays. */
-static rg_result read_plain(rgi_call *c, const rg_scene *scene, const rg_ray *rays, const void *out, uint64_t count) {
-    memset(c, 0, sizeof *c);
-    c->count = count;
+static rg_result read_plain(rgi_call *c, rg_scene *scene, const rg_ray *rays, const void *out, uint64_t count,
+                            rg_ray_views *views) {
+    begin_call(c, scene, count);
     rg_result result = check_call(scene, count);
     if (result || count == 0) return result;
     if (!rays || !out) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", rays ? "the output" : "rays");
-    c->rays.origin = rg_input3_packed(rays->origin, sizeof *rays, RG_F64);
-    c->rays.direction = rg_input3_packed(rays->direction, sizeof *rays, RG_F64);
-    c->rays.t_min = plain(&rays->t_min, RG_F64);
-    c->rays.t_max = plain(&rays->t_max, RG_F64);
-    c->rays.mask = plain(&rays->mask, RG_U32);
+    views->origin = plain3(rays->origin);
+    views->direction = plain3(rays->direction);
+    views->t_min = plain(&rays->t_min, RG_F64);
+    views->t_max = plain(&rays->t_max, RG_F64);
+    views->mask = plain(&rays->mask, RG_U32);
+    c->rays = views;
     return RG_OK;
 }
 
 rg_result rg_scene_trace(rg_scene *scene, const rg_ray *rays, rg_hit *hits, uint64_t count) {
     rgi_call c;
-    rg_result result = read_plain(&c, scene, rays, hits, count);
+    rg_ray_views views;
+    rg_result result = read_plain(&c, scene, rays, hits, count, &views);
     if (result || count == 0) return result;
     c.plain_hits = hits;
     c.wanted = RGI_ALL;
@@ -187,7 +215,8 @@ rg_result rg_scene_trace(rg_scene *scene, const rg_ray *rays, rg_hit *hits, uint
 
 rg_result rg_scene_occluded(rg_scene *scene, const rg_ray *rays, uint8_t *occluded, uint64_t count) {
     rgi_call c;
-    rg_result result = read_plain(&c, scene, rays, occluded, count);
+    rg_ray_views views;
+    rg_result result = read_plain(&c, scene, rays, occluded, count, &views);
     if (result || count == 0) return result;
     c.any = true;
     c.occluded.data = occluded;

@@ -8,11 +8,9 @@ static size_t width(rg_type type) {
     return widths[type];
 }
 
-rg_result rgi_check_view(const void *data, rg_type type, unsigned types, int required, const char *name) {
-    if (!data) return required ? rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", name) : RG_OK;
-    if (type < RG_F64 || type > RG_U64 || !(types >> type & 1))
-        return rgi_fail(RG_INVALID_ARGUMENT, "%s.type is %d, which this view can't have", name, (int)type);
-    return RG_OK;
+rg_result rgi_refuse_view(const void *data, rg_type type, const char *name) {
+    if (!data) return rgi_fail(RG_INVALID_ARGUMENT, "%s is NULL", name);
+    return rgi_fail(RG_INVALID_ARGUMENT, "%s.type is %d, which this view can't have", name, (int)type);
 }
 
 rg_result rgi_check_view3(const void *x, const void *y, const void *z, rg_type type, unsigned types, int required,

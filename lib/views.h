@@ -5,6 +5,7 @@
 
 #include <raygrid/base.h>
 
+#include <stdbool.h>
 #include <string.h>
 
 /** Types that a view may have, as bits (1 << type). */
@@ -16,8 +17,15 @@ enum {
     RGI_U8 = 1 << RG_U8
 };
 
+/** The refusal of a view that is missing, or else of its type. */
+rg_result rgi_refuse_view(const void *data, rg_type type, const char *name);
+
 /** RG_INVALID_ARGUMENT if a view that is given has a type not in `types`, or a required one is missing. */
-rg_result rgi_check_view(const void *data, rg_type type, unsigned types, int required, const char *name);
+static inline rg_result rgi_check_view(const void *data, rg_type type, unsigned types, int required,
+                                       const char *name) {
+    bool right = data ? (unsigned)type <= RG_U64 && types >> type & 1 : !required;
+    return right ? RG_OK : rgi_refuse_view(data, type, name);
+}
 rg_result rgi_check_view3(const void *x, const void *y, const void *z, rg_type type, unsigned types, int required,
                           const char *name);
 

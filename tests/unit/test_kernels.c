@@ -304,7 +304,7 @@ static void trace_batch(const rgi_kernels *k, const rg_ray *rays, uint32_t count
     static rgi_packet packets[RGI_PACKETS];
     rgi_middle middle = rgi_lattice_middle(&store.lattice);
     rgi_frustum f = {.count = (count + RGI_PACKET - 1) / RGI_PACKET, .patience = UINT32_MAX};
-    if (spread) middle.spacing = INFINITY; /* as where the host says that they go the same way */
+    middle.spacing = spread ? INFINITY : rgi_lattice_spacing(&store.lattice); /* as where the host says that they go the same way */
     for (uint32_t n = 0; n < f.count; n++) {
         uint32_t first = n * RGI_PACKET, left = count - first < RGI_PACKET ? count - first : RGI_PACKET;
         if (!make_packet(k, &middle, rays + first, left, ready + first, &bundles[n], &packets[n])) return;
