@@ -371,39 +371,70 @@ static uint32_t meet_certain(const group *g, const rgi_packet *p, rgi_meeting *m
     return p->certain & m->met;
 }
 
-static void write_known(const group *g, uint32_t i) {
-    const rgi_call *c = g->call;
-    const known *k = &g->known;
-    rgi_object *object = rgi_scene_object(c->scene, k->slot[i]);
-    rgi_store(&c->hits->t, g->first + i, k->t[i] * g->bundle.to_world[i] * g->bundle.to_world2[i]);
-    rgi_store_integer(&c->hits->object, g->first + i, rgi_object_id(object, k->slot[i]));
-    rgi_store_integer(&c->hits->primitive, g->first + i, k->primitive[i]);
+/* Numbers of the rays that are named by bits. */
+static void store_lanes(const rg_output *view, uint64_t first, uint32_t rays, const double numbers[RGI_PACKET]) {
+    if (!view->data) return;
+    char *at = rgi_record_out(view->data, view->stride, first);
+    for (; view->type == RG_F32 && rays; rays &= rays - 1) {
+        int i = __builtin_ctz(rays);
+        rgi_write_float(at + view->stride * i, RG_F32, numbers[i]);
+    }
+    for (; rays; rays &= rays - 1) {
+        int i = __builtin_ctz(rays);
+        rgi_write_float(at + view->stride * i, RG_F64, numbers[i]);
+    }
+}
+
+static void store_integers(const rg_output *view, uint64_t first, uint32_t rays, const uint64_t numbers[RGI_PACKET]) {
+    if (!view->data) return;
+    char *at = rgi_record_out(view->data, view->stride, first);
+    for (; view->type == RG_U64 && rays; rays &= rays - 1) {
+        int i = __builtin_ctz(rays);
+        rgi_write_integer(at + view->stride * i, RG_U64, numbers[i]);
+    }
+    for (; rays; rays &= rays - 1) {
+        int i = __builtin_ctz(rays);
+        rgi_write_integer(at + view->stride * i, view->type, numbers[i]);
+    }
 }
 
 /* Writes the hits that are certain, or known, and the misses of rays that asked nothing. Returns their bits. */
 static uint32_t write_unasked(const group *g, const rgi_packet *p) {
     const rgi_call *c = g->call;
+    const known *k = &g->known;
     rgi_meeting m;
-    uint64_t ids[RGI_PACKET] = {0};
+    double t[RGI_PACKET];
+    uint64_t objects[RGI_PACKET], primitives[RGI_PACKET], ids[RGI_PACKET];
     uint32_t all = (1u << g->count) - 1, met = 0, written = all & ~g->made & ~p->certain;
     if (p->certain) met = meet_certain(g, p, &m, ids);
     /* Of triangles the normals are not known. */
-    if (c->wanted) written &= ~g->known.rays;
+    if (c->wanted) written &= ~k->rays;
+    for (uint32_t i = 0; i < RGI_PACKET; i++) {
+        t[i] = INFINITY;
+        objects[i] = RG_NO_OBJECT;
+        primitives[i] = RG_NO_PRIMITIVE;
+    }
+    for (uint32_t rays = written & k->rays; rays; rays &= rays - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(rays);
+        t[i] = k->t[i] * g->bundle.to_world[i] * g->bundle.to_world2[i];
+        objects[i] = rgi_object_id(rgi_scene_object(c->scene, k->slot[i]), k->slot[i]);
+        primitives[i] = k->primitive[i];
+    }
+    for (uint32_t rays = met; rays; rays &= rays - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(rays);
+        t[i] = m.t[i];
+        objects[i] = ids[i];
+        primitives[i] = 0;
+    }
     written |= met;
-    for (uint32_t i = 0; i < g->count; i++) {
+    store_lanes(&c->hits->t, g->first, written, t);
+    store_integers(&c->hits->object, g->first, written, objects);
+    store_integers(&c->hits->primitive, g->first, written, primitives);
+    for (uint32_t rays = c->hits->normal.x ? written : 0; rays; rays &= rays - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(rays);
         bool hit = met >> i & 1;
-        if (!(written >> i & 1)) continue;
-        if (!hit && g->known.rays >> i & 1) {
-            write_known(g, i);
-            continue;
-        }
-        rgi_store(&c->hits->t, g->first + i, hit ? m.t[i] : INFINITY);
-        rgi_store_integer(&c->hits->object, g->first + i, hit ? ids[i] : RG_NO_OBJECT);
-        rgi_store_integer(&c->hits->primitive, g->first + i, hit ? 0 : RG_NO_PRIMITIVE);
-        if (hit && c->wanted)
-            rgi_store3(&c->hits->normal, g->first + i, m.normal[0][i], m.normal[1][i], m.normal[2][i]);
-        else
-            rgi_store3(&c->hits->normal, g->first + i, 0, 0, 0);
+        rgi_store3(&c->hits->normal, g->first + i, hit ? m.normal[0][i] : 0, hit ? m.normal[1][i] : 0,
+                   hit ? m.normal[2][i] : 0);
     }
     return written;
 }
