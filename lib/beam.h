@@ -213,8 +213,10 @@ struct rgi_kernels {
     void (*part_few)(struct rgi_wrap *items, struct rgi_wrap *spare, uint32_t count, uint32_t left);
     /** Makes items of triangles, or of runs of them. */
     void (*wrap_items)(const struct rgi_making *making);
-    /** The box of a leaf whose vertices are new, without a pad; sets what follows from them. */
-    void (*measure_leaf)(const struct rgi_mesh *mesh, void *leaf, float lo[3], float hi[3]);
+    /** The box of a leaf whose vertices are new, without a pad; sets what follows from them, and adds them to how far
+     * those of all leaves reach. */
+    void (*measure_leaf)(const struct rgi_mesh *mesh, void *leaf, struct rgi_reaches *reaches, float lo[3],
+                         float hi[3]);
 };
 
 extern const rgi_kernels rgi_kernels_portable;

@@ -206,9 +206,64 @@ static void measure_soup(const rgi_soup_leaf *leaf, float lo[3], float hi[3]) {
     }
 }
 
-static void measure_leaf(const rgi_mesh *mesh, void *leaf, float lo[3], float hi[3]) {
-    if (mesh->soup)
+RGI_INLINE void add_diagonal(rgi_reaches *r, int diagonal, f8 a, f8 b) {
+    f8_store(r->most[diagonal], f8_max(f8_load(r->most[diagonal]), f8_max(a, b)));
+    f8_store(r->least[diagonal], f8_min(f8_load(r->least[diagonal]), f8_min(a, b)));
+}
+
+/* Sums in this order and without fused operations: how far points reach has the same bits everywhere. */
+RGI_INLINE f8 square_of(f8 x, f8 y, f8 z) {
+    return f8_add(f8_add(f8_mul(x, x), f8_mul(y, y)), f8_mul(z, z));
+}
+
+/* Of twice as many points as there are lanes: what is stored costs more than what is computed. */
+RGI_INLINE void add_points(rgi_reaches *r, const f8 x[2], const f8 y[2], const f8 z[2]) {
+    const f8 sum[2] = {f8_add(x[0], y[0]), f8_add(x[1], y[1])};
+    const f8 difference[2] = {f8_sub(x[0], y[0]), f8_sub(x[1], y[1])};
+    add_diagonal(r, 0, sum[0], sum[1]);
+    add_diagonal(r, 1, difference[0], difference[1]);
+    add_diagonal(r, 2, f8_add(x[0], z[0]), f8_add(x[1], z[1]));
+    add_diagonal(r, 3, f8_sub(x[0], z[0]), f8_sub(x[1], z[1]));
+    add_diagonal(r, 4, f8_add(y[0], z[0]), f8_add(y[1], z[1]));
+    add_diagonal(r, 5, f8_sub(y[0], z[0]), f8_sub(y[1], z[1]));
+    add_diagonal(r, 6, f8_add(sum[0], z[0]), f8_add(sum[1], z[1]));
+    add_diagonal(r, 7, f8_sub(sum[0], z[0]), f8_sub(sum[1], z[1]));
+    add_diagonal(r, 8, f8_add(difference[0], z[0]), f8_add(difference[1], z[1]));
+    add_diagonal(r, 9, f8_sub(difference[0], z[0]), f8_sub(difference[1], z[1]));
+    f8 squares = f8_max(square_of(x[0], y[0], z[0]), square_of(x[1], y[1], z[1]));
+    f8_store(r->square, f8_max(f8_load(r->square), squares));
+}
+
+/* For a lane that is NaN, the first, which never is. */
+RGI_INLINE f8 load_soup(const float lanes[RGI_SOUP_LEAF]) {
+    f8 at = f8_load(lanes);
+    return f8_pick(f8_le(at, at), at, f8_set(lanes[0]));
+}
+
+RGI_INLINE void add_soup(rgi_reaches *r, const rgi_soup_leaf *leaf, int corner, int other) {
+    f8 at[3][2];
+    for (int a = 0; a < 3; a++) {
+        at[a][0] = load_soup(leaf->at[corner][a]);
+        at[a][1] = load_soup(leaf->at[other][a]);
+    }
+    add_points(r, at[0], at[1], at[2]);
+}
+
+RGI_INLINE void add_connected(rgi_reaches *r, const rgi_mesh_leaf *leaf) {
+    f8 at[3][2];
+    for (int a = 0; a < 3; a++) {
+        for (int half = 0; half < 2; half++) at[a][half] = f8_load(leaf->at[a] + half * RGI_TOGETHER);
+    }
+    add_points(r, at[0], at[1], at[2]);
+}
+
+static void measure_leaf(const rgi_mesh *mesh, void *leaf, rgi_reaches *reaches, float lo[3], float hi[3]) {
+    if (mesh->soup) {
         measure_soup(leaf, lo, hi);
-    else
+        add_soup(reaches, leaf, 0, 1);
+        add_soup(reaches, leaf, 1, 2);
+    } else {
         measure_connected(leaf, lo, hi);
+        add_connected(reaches, leaf);
+    }
 }

@@ -41,6 +41,10 @@ void rgi_mesh_set_frame(rgi_mesh *mesh) {
     mesh->pad = (float)(0x1p-20 * most) + mesh->rounding;
 }
 
+void rgi_mesh_set_support(rgi_mesh *mesh, const rgi_reaches *reaches) {
+    rgi_support_init(&mesh->support, reaches, mesh->lo, mesh->hi, mesh->origin, mesh->scale, (double)mesh->pad);
+}
+
 static rg_result make_room(rgi_making *m, bool floats) {
     rgi_mesh *mesh = m->mesh;
     rgi_memory *memory = mesh->memory;

@@ -14,6 +14,7 @@
 #include "intersect.h"
 #include "memory.h"
 #include "middle.h"
+#include "support.h"
 
 struct rgi_kernels;
 
@@ -69,7 +70,8 @@ typedef struct rgi_mesh {
     float pad;                     /* around boxes, in the frame */
     float rounding;                /* what tests in double may be wrong by, in the frame */
     rgi_middle middle;
-    double cost; /* of rays in the tree as it was built: see rgi_mesh_fit */
+    rgi_support support; /* of the triangles; the same however the tree was made */
+    double cost;         /* of rays in the tree as it was built: see rgi_mesh_fit */
 } rgi_mesh;
 
 /** The caller's number of a triangle of a leaf. */
@@ -113,6 +115,9 @@ rg_result rgi_mesh_create(rgi_memory *memory, const rg_mesh_views *views, const 
 rg_result rgi_mesh_deform(rgi_memory *memory, const rgi_mesh *old, const rgi_mesh_making *how,
                           const rg_mesh_views *views, rgi_mesh **mesh);
 void rgi_mesh_destroy(rgi_mesh *mesh);
+
+/** Sets how far the mesh reaches, by what its leaves had of it. */
+void rgi_mesh_set_support(rgi_mesh *mesh, const rgi_reaches *reaches);
 
 /** Copies the vertices, as they were given but for those that no triangle uses and that may be 0 now. */
 void rgi_mesh_read_vertices(const rgi_mesh *mesh, double (*vertices)[3]);

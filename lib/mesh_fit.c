@@ -71,6 +71,7 @@ typedef struct refill {
     const rgi_mesh *old;
     rgi_mesh *mesh;
     const rg_input3 *vertices;
+    rgi_reaches *reaches; /* of the leaves so far */
 } refill;
 
 /* A vertex in the frame. */
@@ -152,7 +153,7 @@ static void refill_below(const refill *r, rgi_mesh_ref ref, box *out) {
         refill_soup(r, old, at);
     else
         refill_leaf(r, old, at);
-    r->mesh->kernels->measure_leaf(r->mesh, at, out->lo, out->hi);
+    r->mesh->kernels->measure_leaf(r->mesh, at, r->reaches, out->lo, out->hi);
 }
 
 /* The vertices that are kept in double, the box of those that triangles use, and the frame around it. */
@@ -175,19 +176,26 @@ static void refill_vertices(const refill *r) {
     rgi_mesh_set_frame(mesh);
 }
 
-/* False if the frame of floats does not fit. */
-static bool refill_mesh(const refill *r) {
+/* False if the frame is not the one that a mesh made of these vertices would have: how far a mesh reaches, and so
+ * each bit of what rays hit, must not depend on which form it had before. */
+static bool refill_mesh(const refill *r, bool floats) {
     rgi_mesh *mesh = r->mesh;
     box all;
-    if (mesh->vertices) refill_vertices(r);
+    if (mesh->vertices) {
+        refill_vertices(r);
+        if (floats && rgi_mesh_fits_floats(mesh)) return false;
+    }
     refill_below(r, mesh->root, &all);
-    if (mesh->vertices) return true;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3 && !mesh->vertices; a++) {
         mesh->lo[a] = (double)all.lo[a];
         mesh->hi[a] = (double)all.hi[a];
     }
-    rgi_mesh_set_frame(mesh);
-    return rgi_mesh_fits_floats(mesh);
+    if (!mesh->vertices) {
+        rgi_mesh_set_frame(mesh);
+        if (!rgi_mesh_fits_floats(mesh)) return false;
+    }
+    rgi_mesh_set_support(mesh, r->reaches);
+    return true;
 }
 
 /* An array of the old mesh, copied if there is one. */
@@ -234,8 +242,10 @@ rg_result rgi_mesh_deform(rgi_memory *memory, const rgi_mesh *old, const rgi_mes
     if (result) return result;
     if (!floats && !old->vertices) return rgi_mesh_create(memory, views, how, old, out);
     result = copy_mesh(memory, old, &mesh);
-    const refill r = {old, mesh, &views->vertices};
-    bool fits = !result && refill_mesh(&r) && rgi_mesh_settle(mesh, mesh->pad) <= WORN * mesh->cost;
+    rgi_reaches reaches;
+    rgi_reaches_empty(&reaches);
+    const refill r = {old, mesh, &views->vertices, &reaches};
+    bool fits = !result && refill_mesh(&r, floats) && rgi_mesh_settle(mesh, mesh->pad) <= WORN * mesh->cost;
     if (fits) {
         *out = mesh;
         return RG_OK;

@@ -19,6 +19,7 @@ typedef struct writer {
     const rgi_making *making;
     uint64_t lines;
     uint32_t leaves;
+    rgi_reaches reaches; /* of the leaves so far */
 } writer;
 
 typedef struct child {
@@ -242,7 +243,7 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
             write_soup_leaf(w->making, b, leaf);
         else
             write_leaf(w->making, b, leaf, w->leaves++);
-        mesh->kernels->measure_leaf(mesh, leaf, out->lo, out->hi);
+        mesh->kernels->measure_leaf(mesh, leaf, &w->reaches, out->lo, out->hi);
         for (int a = 0; a < 3; a++) {
             out->lo[a] -= mesh->pad;
             out->hi[a] += mesh->pad;
@@ -267,7 +268,7 @@ static void write_lines(writer *w, const rgi_branch *b, child *out) {
 
 rg_result rgi_lines_make(const rgi_making *making) {
     rgi_mesh *mesh = making->mesh;
-    writer w = {making, 0, 0};
+    writer w = {.making = making};
     child root;
     count_lines(&w, making->branches);
     if (w.lines > MOST_LINES)
@@ -281,8 +282,10 @@ rg_result rgi_lines_make(const rgi_making *making) {
     }
     if (result) return result;
     w.lines = w.leaves = 0;
+    rgi_reaches_empty(&w.reaches);
     write_lines(&w, making->branches, &root);
     mesh->root = root.ref;
     mesh->levels = root.levels;
+    rgi_mesh_set_support(mesh, &w.reaches);
     return RG_OK;
 }

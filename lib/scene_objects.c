@@ -28,10 +28,13 @@ static rg_result derive(const rg_shape *shape, rgi_placing *p) {
     rg_result result = rgi_check_position(p->bound.centre);
     if (result) return result;
     p->bound.ball = shape->kind == RG_SHAPE_SPHERE && !p->is_linear;
-    result = p->bound.ball ? rgi_ball_bounds(p->bound.radius, p->bound.centre, p->bound.lo, p->bound.hi)
-                           : rgi_shape_bounds(shape, p->bound.centre, p->is_linear ? p->linear.product : NULL,
-                                              p->bound.lo, p->bound.hi);
-    if (!result) p->reach = p->bound.ball ? p->bound.radius : reach_of(p);
+    if (p->bound.ball) {
+        p->reach = p->bound.radius;
+        return rgi_ball_bounds(p->bound.radius, p->bound.centre, p->bound.lo, p->bound.hi);
+    }
+    result = rgi_shape_bounds(shape, p->bound.centre, p->is_linear ? p->linear.product : NULL, p->bound.lo,
+                              p->bound.hi, &p->reach);
+    if (!result) p->reach = rgi_min(p->reach, reach_of(p));
     return result;
 }
 

@@ -25,6 +25,8 @@
 #define rgi_mesh_deform(memory, old, how, views, mesh) RG_OK
 #define rgi_mesh_destroy(mesh) ((void)0)
 #define rgi_mesh_intersect(mesh, ray, candidate) false
+#define rgi_support_reach(support) INFINITY
+#define rgi_support_bounds(support, matrix, lo, hi) INFINITY
 #endif
 
 /* --------------------------------------------------------------------------------------------- intersection */
@@ -111,7 +113,8 @@ static double row_length(const double *matrix, int row) {
     return sqrt(rgi_dot(matrix + 3 * row, matrix + 3 * row));
 }
 
-/* The box around `linear * shape`, before the position is added; *scale bounds what was added up on the way. */
+/* One axis of the box around `linear * shape`, before the position is added; *scale bounds what was added up on the
+ * way. */
 static void posed_box(const rg_shape *shape, const double *matrix, int i, double *lo, double *hi, double *scale) {
     const double *row = matrix + 3 * i;
     double radius = shape->kind == RG_SHAPE_SPHERE ? shape->of.radius : shape->of.capsule.radius;
@@ -141,6 +144,10 @@ static void posed_box(const rg_shape *shape, const double *matrix, int i, double
     }
 }
 
+static bool is_infinite(const rg_shape *shape) {
+    return isinf(shape->lo[0] + shape->lo[1] + shape->lo[2]) || isinf(shape->hi[0] + shape->hi[1] + shape->hi[2]);
+}
+
 /* Adds the position. At most a dozen roundings came before, each of half an ulp of `scale`. */
 static rg_result world_bounds(int i, double position, double scale, bool infinite, double *lo, double *hi) {
     double pad = 0x1p-49 * (scale + fabs(position));
@@ -161,25 +168,44 @@ rg_result rgi_ball_bounds(double radius, const double position[3], double lo[3],
     return result;
 }
 
-rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const double *matrix, double lo[3],
-                           double hi[3]) {
+/* The same for all axes of a mesh. */
+static double posed_mesh(const rg_shape *shape, const double *matrix, double lo[3], double hi[3], double scale[3]) {
     for (int i = 0; i < 3; i++) {
-        double scale;
-        bool infinite = isinf(shape->lo[i]) || isinf(shape->hi[i]);
-        if (!matrix) {
-            lo[i] = shape->lo[i];
-            hi[i] = shape->hi[i];
-            scale = infinite ? 0 : rgi_max(fabs(lo[i]), fabs(hi[i]));
-        } else if (isinf(shape->lo[0] + shape->lo[1] + shape->lo[2]) ||
-                   isinf(shape->hi[0] + shape->hi[1] + shape->hi[2])) {
-            return rgi_fail(RG_INVALID_VALUE, "an infinite box needs the identity as linear part of its pose");
-        } else {
-            posed_box(shape, matrix, i, &lo[i], &hi[i], &scale);
-        }
-        rg_result result = world_bounds(i, position[i], scale, infinite, &lo[i], &hi[i]);
-        if (result) return result;
+        scale[i] = 0;
+        for (int j = 0; j < 3; j++)
+            scale[i] += fabs(matrix[3 * i + j]) * rgi_max(fabs(shape->lo[j]), fabs(shape->hi[j]));
     }
-    return RG_OK;
+    return rgi_support_bounds(&shape->of.mesh->support, matrix, lo, hi);
+}
+
+/* A shape under the identity. */
+static double upright(const rg_shape *shape, double lo[3], double hi[3], double scale[3]) {
+    for (int i = 0; i < 3; i++) {
+        lo[i] = shape->lo[i];
+        hi[i] = shape->hi[i];
+        scale[i] = isinf(lo[i]) || isinf(hi[i]) ? 0 : rgi_max(fabs(lo[i]), fabs(hi[i]));
+    }
+    return shape->kind == RG_SHAPE_MESH ? rgi_support_reach(&shape->of.mesh->support) : INFINITY;
+}
+
+rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const double *matrix, double lo[3],
+                           double hi[3], double *reach) {
+    double scale[3];
+    rg_result result = RG_OK;
+    *reach = INFINITY;
+    if (matrix && is_infinite(shape))
+        return rgi_fail(RG_INVALID_VALUE, "an infinite box needs the identity as linear part of its pose");
+    if (!matrix)
+        *reach = upright(shape, lo, hi, scale);
+    else if (shape->kind == RG_SHAPE_MESH)
+        *reach = posed_mesh(shape, matrix, lo, hi, scale);
+    else
+        for (int i = 0; i < 3; i++) posed_box(shape, matrix, i, &lo[i], &hi[i], &scale[i]);
+    for (int i = 0; i < 3 && !result; i++) {
+        bool infinite = isinf(lo[i]) || isinf(hi[i]);
+        result = world_bounds(i, position[i], scale[i], infinite, &lo[i], &hi[i]);
+    }
+    return result;
 }
 
 /* ----------------------------------------------------------------------------------------------- creation */

@@ -33,10 +33,12 @@ bool rgi_shape_intersect(const rg_shape *shape, rgi_local_ray *ray, rgi_candidat
 
 /**
  * The world box of the shape at a position, with a linear part or NULL for the identity: holds the posed shape with
- * all rounding counted. RG_INVALID_VALUE: beyond 4 * RG_COORDINATE_MAX, or an infinite shape with a linear part.
+ * all rounding counted. *reach: a distance from the position beyond which it does not reach, or infinity: that of
+ * the box's corners is as good. RG_INVALID_VALUE: beyond 4 * RG_COORDINATE_MAX, or an infinite shape with a linear
+ * part.
  */
 rg_result rgi_shape_bounds(const rg_shape *shape, const double position[3], const double *matrix, double lo[3],
-                           double hi[3]);
+                           double hi[3], double *reach);
 
 /** The same for a sphere of that radius. Also RG_INVALID_VALUE: a radius out of its range. */
 rg_result rgi_ball_bounds(double radius, const double position[3], double lo[3], double hi[3]);

@@ -31,11 +31,11 @@ static void transform(const double m[9], const double v[3], double out[3]) {
 static void check_bounds(const rg_shape *shape) {
     for (int i = 0; i < 200; i++) {
         double m[9];
-        double position[3], lo[3], hi[3], seen_lo[3], seen_hi[3];
+        double position[3], lo[3], hi[3], reach, seen_lo[3], seen_hi[3];
         for (int k = 0; k < 9; k++) m[k] = unit_random_scale(-1, 1);
         for (int k = 0; k < 3; k++) position[k] = unit_random_scale(-2, 6);
         const double *matrix = i % 2 ? m : NULL;
-        ck_assert_int_eq(rgi_shape_bounds(shape, position, matrix, lo, hi), RG_OK);
+        ck_assert_int_eq(rgi_shape_bounds(shape, position, matrix, lo, hi, &reach), RG_OK);
         rgi_empty_box(seen_lo, seen_hi);
         for (int k = 0; k < 500; k++) {
             double local[3], world[3];
@@ -47,7 +47,9 @@ static void check_bounds(const rg_shape *shape) {
             for (int a = 0; a < 3; a++) {
                 world[a] += position[a];
                 ck_assert(world[a] >= lo[a] && world[a] <= hi[a]);
+                local[a] = world[a] - position[a];
             }
+            ck_assert(sqrt(rgi_dot(local, local)) <= reach);
             rgi_grow(seen_lo, seen_hi, world, world);
         }
         for (int a = 0; a < 3; a++) ck_assert_double_ge(seen_hi[a] - seen_lo[a], 0.6 * (hi[a] - lo[a]));
@@ -70,19 +72,19 @@ END_TEST
 
 START_TEST(infinite_and_far) {
     rg_shape *plane, *ball;
-    double lo[3], hi[3], position[3] = {1, 2, 3};
+    double lo[3], hi[3], reach, position[3] = {1, 2, 3};
     const double turned[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
     ck_assert_int_eq(
         rg_shape_create_box(NULL, (double[]){-INFINITY, -1, -INFINITY}, (double[]){INFINITY, 0, INFINITY}, &plane),
         RG_OK);
-    ck_assert_int_eq(rgi_shape_bounds(plane, position, NULL, lo, hi), RG_OK);
+    ck_assert_int_eq(rgi_shape_bounds(plane, position, NULL, lo, hi, &reach), RG_OK);
     ck_assert(lo[0] == -INFINITY && hi[2] == INFINITY && lo[1] <= 1 && hi[1] >= 2 && hi[1] < 2.0000001);
-    ck_assert_int_eq(rgi_shape_bounds(plane, position, turned, lo, hi), RG_INVALID_VALUE);
+    ck_assert_int_eq(rgi_shape_bounds(plane, position, turned, lo, hi, &reach), RG_INVALID_VALUE);
     ck_assert_int_eq(rg_shape_create_sphere(NULL, 1e100, &ball), RG_OK);
     position[0] = 1e100;
-    ck_assert_int_eq(rgi_shape_bounds(ball, position, NULL, lo, hi), RG_OK);
+    ck_assert_int_eq(rgi_shape_bounds(ball, position, NULL, lo, hi, &reach), RG_OK);
     const double large[9] = {3, 0, 0, 0, 1, 0, 0, 0, 1};
-    ck_assert_int_eq(rgi_shape_bounds(ball, position, large, lo, hi), RG_INVALID_VALUE);
+    ck_assert_int_eq(rgi_shape_bounds(ball, position, large, lo, hi, &reach), RG_INVALID_VALUE);
     rg_shape_release(&plane);
     rg_shape_release(&ball);
 }
