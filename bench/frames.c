@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * frames.c: what a moving scene costs a frame: bodies are moved by their radius in one call, then a picture and its
- * shadows are traced, each in the side's best way. All that was left to decay has decayed over many frames before.
+ * frames.c: what a moving scene costs a frame: bodies are moved by their radius in one call, or a scene's one mesh
+ * gets new vertices; then a picture and its shadows are traced, each in the side's best way. All that was left to
+ * decay has decayed over many frames before.
  */
 #include "bench.h"
+#include "mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,10 +24,13 @@ struct film {
     rg_object *objects; /* of those that move now */
     uint32_t *which;
     double (*targets)[3];
+    struct bench_bend bend; /* of the one mesh, where that is all: then no body moves */
 };
 
+/* What is to be seen next. */
 static void choose(struct film *film) {
     struct bench_scene *bodies = film->bodies;
+    if (film->bend.mesh) bench_bend_next(&film->bend);
     for (uint32_t i = 0; i < film->moved; i++) {
         uint32_t body = film->order[film->next];
         film->next = (film->next + 1) % bodies->count;
@@ -36,21 +41,29 @@ static void choose(struct film *film) {
     }
 }
 
+/* Few rays are asked of a form before the next: should its tree be made anew, then in a hurry. */
+static double change_own(struct film *film) {
+    if (film->bend.mesh) return own_deform(film->own, 0, RG_MESH_FAST);
+    double start = bench_thread_seconds();
+    own_move_many(film->own, film->objects, film->targets, film->moved);
+    return bench_thread_seconds() - start;
+}
+
 /* Where the shadow rays start is the host's to work out, the same for both sides, and is not counted. */
 static double turn_of_own(void *context) {
     struct film *film = context;
     choose(film);
+    double seconds = change_own(film);
     double start = bench_thread_seconds();
-    own_move_many(film->own, film->objects, film->targets, film->moved);
     own_trace(film->own, film->primary, UINT32_MAX, &film->own_answers);
-    double seconds = bench_thread_seconds() - start;
+    seconds += bench_thread_seconds() - start;
     bench_refill_shadow_rays(film->shadows, film->primary, film->own_answers.t);
     start = bench_thread_seconds();
     own_trace(film->own, film->shadows, UINT32_MAX, &film->own_answers);
     return seconds + bench_thread_seconds() - start;
 }
 
-/* Moves what raygrid has just moved. */
+/* Moves what raygrid has just moved; the vertices of one mesh are read where they are. */
 static double turn_of_peer(void *context) {
     struct film *film = context;
     double seconds = peer_move(film->peer, film->which, film->targets, film->moved, 0);
@@ -70,11 +83,11 @@ static void find_ways(struct film *film) {
     film->shadow_way = peer_best_way(film->peer, film->shadows, false, &film->peer_answers, NULL);
 }
 
-/* Moves the bodies through the frames that are not measured; with a peer that keeps its tree, the peer too. */
+/* What changes goes through the frames that are not measured; with a peer that keeps its tree, the peer too. */
 static void let_decay(struct film *film, struct peer *refitted) {
     for (int i = 0; i < film->run->options.effort.frames; i++) {
         choose(film);
-        own_move_many(film->own, film->objects, film->targets, film->moved);
+        change_own(film);
         if (refitted) peer_move(refitted, film->which, film->targets, film->moved, 0);
     }
 }
@@ -107,7 +120,7 @@ static void choose_peer(struct film *film, struct peer *refitted) {
 /* The pictures that were traced last, against where the bodies are. */
 static void report(struct film *film, const char *what, const struct bench_duel *duel) {
     struct bench_run *run = film->run;
-    struct bench_line line = bench_line("frames", film->bodies->name, film->bodies->count, what);
+    struct bench_line line = bench_line("frames", film->bodies->name, film->bodies->size, what);
     struct exact *exact = exact_create(film->bodies, NULL);
     struct exact_sample *sample = exact_sample_create(exact, film->primary, run->options.effort.checks / 4);
     struct exact_error error = bench_judge_own(run, sample, film->own, &film->own_answers), peer_error = {0};
@@ -124,7 +137,7 @@ static void report(struct film *film, const char *what, const struct bench_duel 
     line.figure = 1e3 * duel->own;
     line.peer_figure = 1e3 * duel->peer;
     line.ratio = duel->ratio;
-    line.goal = bench_goal(GOAL_FRAME, film->bodies->count);
+    line.goal = film->bend.mesh ? bench_no_goal() : bench_goal(GOAL_FRAME, film->bodies->count);
     line.error = &error;
     line.bytes = own_bytes_per_object(film->own);
     bench_report_line(&run->report, &line);
@@ -134,9 +147,13 @@ static void report(struct film *film, const char *what, const struct bench_duel 
 
 static void measure(struct film *film, double share) {
     const struct peer_choice *choice = &film->run->options.peer;
-    char what[64];
-    snprintf(what, sizeof what, "%g %% moved", 100 * share);
-    film->moved = (uint32_t)fmax(share * film->bodies->count, 1);
+    char what[64] = "new vertices";
+    if (bench_is_one_mesh(film->bodies)) {
+        film->bend = bench_bend_create(film->bodies->shapes[0].mesh);
+    } else {
+        snprintf(what, sizeof what, "%g %% moved", 100 * share);
+        film->moved = (uint32_t)fmax(share * film->bodies->count, 1);
+    }
     film->own = own_create(film->bodies, 1);
     struct peer *refitted = NULL;
     enum peer_build refit = bench_all_spheres(film->bodies) ? PEER_USER_REFIT : PEER_REFIT;
@@ -150,16 +167,23 @@ static void measure(struct film *film, double share) {
     peer_destroy(film->peer);
     film->peer = NULL;
     own_destroy(film->own);
+    bench_bend_destroy(&film->bend);
+}
+
+/* How many shares of the bodies move in turn. */
+static int shares_of(const struct bench_run *run, const struct bench_scene *bodies) {
+    /* Of the largest scenes only the first two shares, for the time that all those frames take. */
+    bool large = bodies->count >= 1000000 || (bodies->count >= 100000 && strcmp(bodies->name, "meshes") == 0);
+    if (bench_is_one_mesh(bodies)) return 1;
+    return large && run->options.effort.shares > 2 ? 2 : run->options.effort.shares;
 }
 
 void bench_frames(struct bench_run *run, const char *scene, uint32_t count) {
     static const double SHARES[] = {1, 0.01, 0.1, 0.001};
-    /* Of the largest scenes only the first two shares, for the time that all those frames take. */
-    bool large = count >= 1000000 || (count >= 100000 && strcmp(scene, "meshes") == 0);
-    int shares = large && run->options.effort.shares > 2 ? 2 : run->options.effort.shares;
-    for (int i = 0; i < shares; i++) {
+    for (int i = 0, shares = 1; i < shares; i++) {
         struct bench_scene *bodies = bench_scene_of(run, scene, count);
         if (!bodies) return;
+        shares = shares_of(run, bodies);
         struct film film = {.run = run, .bodies = bodies};
         film.primary = bench_primary_rays(bodies, run->options.effort.side, false);
         film.own_answers = bench_answers_create(film.primary->count);

@@ -18,10 +18,14 @@ struct section {
 };
 
 static const struct section SECTIONS[] = {
-    {"builds", bench_builds, SPHERES | OBJECTS}, {"traces", bench_traces, SPHERES | OBJECTS | ONE_MESH},
-    {"meshes", bench_meshes, ONE_MESH},          {"updates", bench_updates, SPHERES | OBJECTS},
-    {"frames", bench_frames, SPHERES | OBJECTS}, {"lasting", bench_lasting, SPHERES},
-    {"threads", bench_threads, SPHERES},         {"omissions", bench_omissions, SPHERES},
+    {"builds", bench_builds, SPHERES | OBJECTS},
+    {"traces", bench_traces, SPHERES | OBJECTS | ONE_MESH},
+    {"meshes", bench_meshes, ONE_MESH},
+    {"updates", bench_updates, SPHERES | OBJECTS},
+    {"frames", bench_frames, SPHERES | OBJECTS | ONE_MESH},
+    {"lasting", bench_lasting, SPHERES},
+    {"threads", bench_threads, SPHERES},
+    {"omissions", bench_omissions, SPHERES},
     {"latency", bench_latency, SPHERES},
 };
 

@@ -123,3 +123,23 @@ void bench_mesh_destroy(struct bench_mesh *mesh) {
     free(mesh->corners);
     free(mesh);
 }
+
+struct bench_bend bench_bend_create(struct bench_mesh *mesh) {
+    size_t floats = 3 * (size_t)mesh->vertex_count;
+    struct bench_bend bend = {mesh, bench_allocate(floats, sizeof *bend.home), 0};
+    memcpy(bend.home, mesh->vertices, floats * sizeof *bend.home);
+    return bend;
+}
+
+void bench_bend_next(struct bench_bend *bend) {
+    float phase = 0.7f * (float)++bend->forms;
+    for (uint32_t i = 0; i < bend->mesh->vertex_count; i++) {
+        const float *from = bend->home + 3 * (size_t)i;
+        float *to = bend->mesh->vertices + 3 * (size_t)i;
+        for (int k = 0; k < 3; k++) to[k] = from[k] + 0.01f * sinf(20 * from[(k + 1) % 3] + phase);
+    }
+}
+
+void bench_bend_destroy(struct bench_bend *bend) {
+    free(bend->home);
+}

@@ -4,12 +4,8 @@
  * vertices where the host has them; raygrid copies them, and that is counted.
  */
 #include "bench.h"
+#include "mesh.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-/* A mesh whose vertices go to and fro. */
 struct smithy {
     struct bench_run *run;
     struct bench_scene *bodies;
@@ -17,8 +13,7 @@ struct smithy {
     struct peer *peer;
     struct bench_rays *rays;
     struct bench_answers answers;
-    float *home; /* the vertices as they were made */
-    int beats;   /* new forms so far */
+    struct bench_bend bend;
     rg_mesh_quality quality;
 };
 
@@ -31,28 +26,10 @@ static double a_triangle(const struct smithy *s, double of_size) {
     return of_size * s->bodies->size / mesh_of(s)->triangle_count;
 }
 
-static rg_shape_config config_of(const struct smithy *s) {
-    rg_shape_config config;
-    own_check(rg_shape_config_default(&config, sizeof config));
-    config.quality = s->quality;
-    return config;
-}
-
-/* The next form: waves of a hundredth of the cube that wander through. */
-static void bend(struct smithy *s) {
-    struct bench_mesh *mesh = mesh_of(s);
-    float phase = 0.7f * (float)++s->beats;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        const float *from = s->home + 3 * (size_t)i;
-        float *to = mesh->vertices + 3 * (size_t)i;
-        for (int k = 0; k < 3; k++) to[k] = from[k] + 0.01f * sinf(20 * from[(k + 1) % 3] + phase);
-    }
-}
-
 static double turn_of_own_build(void *context) {
     struct smithy *s = context;
-    const rg_shape_config config = config_of(s);
     const rg_mesh_views views = own_mesh_views(mesh_of(s));
+    const rg_shape_config config = own_mesh_config(s->quality);
     rg_shape *shape;
     double before = bench_thread_seconds();
     own_check(rg_shape_create_mesh(&config, &views, &shape));
@@ -67,19 +44,10 @@ static double turn_of_peer_build(void *context) {
     return peer_move(s->peer, NULL, NULL, 0, 0);
 }
 
-/* The shape before the last is what is given back, as a host does. */
 static double turn_of_own_refit(void *context) {
     struct smithy *s = context;
-    bend(s);
-    const rg_shape_config config = config_of(s);
-    const rg_mesh_views views = own_mesh_views(mesh_of(s));
-    rg_shape *bent;
-    double before = bench_thread_seconds();
-    own_check(rg_shape_create_deformed(&config, s->own->shapes[0], &views, &bent));
-    own_check(rg_scene_replace_shape(s->own->scene, s->own->shapes[0], bent));
-    rg_shape_release(&s->own->shapes[0]);
-    s->own->shapes[0] = bent;
-    return bench_thread_seconds() - before;
+    bench_bend_next(&s->bend);
+    return own_deform(s->own, 0, s->quality);
 }
 
 /* Of the form that raygrid has just got, whose vertices it reads where they are. */
@@ -148,10 +116,7 @@ static void measure_memory(struct smithy *s) {
 void bench_meshes(struct bench_run *run, const char *scene, uint32_t count) {
     struct smithy s = {.run = run, .bodies = bench_scene_of(run, scene, count)};
     if (!s.bodies) return;
-    const struct bench_mesh *mesh = mesh_of(&s);
-    size_t floats = 3 * (size_t)mesh->vertex_count;
-    s.home = bench_allocate(floats, sizeof *s.home);
-    memcpy(s.home, mesh->vertices, floats * sizeof *s.home);
+    s.bend = bench_bend_create(mesh_of(&s));
     s.own = own_create(s.bodies, 1);
     s.rays = bench_random_rays(s.bodies, run->options.effort.incoherent, false, false);
     s.answers = bench_answers_create(s.rays->count);
@@ -164,7 +129,7 @@ void bench_meshes(struct bench_run *run, const char *scene, uint32_t count) {
     measure_memory(&s);
     bench_rays_destroy(s.rays);
     bench_answers_destroy(&s.answers);
-    free(s.home);
+    bench_bend_destroy(&s.bend);
     own_destroy(s.own);
     bench_scene_destroy(s.bodies);
 }

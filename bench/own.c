@@ -20,6 +20,13 @@ rg_mesh_views own_mesh_views(const struct bench_mesh *mesh) {
     return views;
 }
 
+rg_shape_config own_mesh_config(rg_mesh_quality quality) {
+    rg_shape_config config;
+    own_check(rg_shape_config_default(&config, sizeof config));
+    config.quality = quality;
+    return config;
+}
+
 static rg_shape *create_shape(const struct bench_shape *shape) {
     const double *s = shape->size;
     const double lo[3] = {-s[0], -s[1], -s[2]}, a[3] = {-s[0], 0, 0}, b[3] = {s[0], 0, 0};
@@ -167,6 +174,18 @@ void own_insert(struct own *own, uint32_t body) {
 
 void own_remove(struct own *own, uint32_t body) {
     own_check(rg_scene_remove(own->scene, own->objects[body]));
+}
+
+double own_deform(struct own *own, int shape, rg_mesh_quality quality) {
+    const rg_mesh_views views = own_mesh_views(own->bodies->shapes[shape].mesh);
+    const rg_shape_config config = own_mesh_config(quality);
+    rg_shape *bent;
+    double before = bench_thread_seconds();
+    own_check(rg_shape_create_deformed(&config, own->shapes[shape], &views, &bent));
+    own_check(rg_scene_replace_shape(own->scene, own->shapes[shape], bent));
+    rg_shape_release(&own->shapes[shape]);
+    own->shapes[shape] = bent;
+    return bench_thread_seconds() - before;
 }
 
 void own_move_many(struct own *own, const rg_object *objects, double (*positions)[3], uint32_t count) {

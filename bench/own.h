@@ -29,8 +29,9 @@ rg_ray_views own_ray_views(const struct bench_rays *rays);
 /** Traces the rays with `a_call` rays a call, reading and writing the arrays by views. */
 void own_trace(struct own *own, const struct bench_rays *rays, uint32_t a_call, const struct bench_answers *answers);
 
-/** A mesh where it lies. */
+/** A mesh where it lies; how it is made. */
 rg_mesh_views own_mesh_views(const struct bench_mesh *mesh);
+rg_shape_config own_mesh_config(rg_mesh_quality quality);
 
 /** The body with that id, UINT32_MAX for none. */
 uint32_t own_body(const struct own *own, uint64_t id);
@@ -42,6 +43,12 @@ void own_remove(struct own *own, uint32_t body);
 /** For those who insert bodies themselves, own->objects[body]: the shape, and what is to be noted afterwards. */
 rg_shape *own_shape_of(const struct own *own, uint32_t body);
 void own_remember(struct own *own, uint32_t body);
+
+/**
+ * Lets the objects of a shape have the vertices that its mesh has got meanwhile; the shape before is given back, as a
+ * host does. Returns the seconds; `quality` as of a mesh that is made.
+ */
+double own_deform(struct own *own, int shape, rg_mesh_quality quality);
 
 /** Moves objects in one call. */
 void own_move_many(struct own *own, const rg_object *objects, double (*positions)[3], uint32_t count);
