@@ -6,6 +6,14 @@
 #include "report.h"
 #include "verdict.h"
 
+enum { BENCH_MODELS = 8 };
+
+/** A glTF file that is shown as one mesh. */
+struct bench_model {
+    const char *file;
+    char scene[48]; /* its name: the file's without folders and ending */
+};
+
 /** What the command line says. A list of names is separated by commas; NULL: all. */
 struct bench_options {
     struct bench_effort effort;
@@ -16,6 +24,8 @@ struct bench_options {
     const char *peer_spheres;  /* how the peer has spheres that stand still: points, user, best */
     const char *embree_config; /* of its device; NULL: nothing special */
     const char *gltf;          /* the file of the scene of that name; NULL: there is none */
+    struct bench_model models[BENCH_MODELS];
+    int model_count;
     const char *json;
     bool spoil; /* spoil raygrid's answers before they are judged: a test of the judge */
 };
@@ -38,7 +48,7 @@ struct exact_error bench_judge_own(const struct bench_run *run, struct exact_sam
 /** The scene that is the glTF file of the options, of whatever size that has. */
 #define BENCH_GLTF_SCENE "gltf"
 
-/** The scene of that name; NULL, after a message, if it can't be had. */
+/** The scene of that name, of its own size if it is a file; NULL, after a message, if it can't be had. */
 struct bench_scene *bench_scene_of(const struct bench_run *run, const char *scene, uint32_t count);
 
 /* Sections, each for one scene of one size. */

@@ -10,6 +10,7 @@ extern "C" {
 #include <cstdio>
 #include <gltf_model.h>
 #include <options.h>
+#include <stdexcept>
 
 namespace {
 
@@ -18,15 +19,16 @@ template <typename T> T *allocate(size_t count) {
 }
 
 /* Its float copies are what both sides and the exact answers know. */
-bench_mesh *copy_mesh(const demo::Surface &surface) {
+bench_mesh *copy_mesh(const std::vector<double> &vertices, const std::vector<uint32_t> &corners) {
+    for (uint32_t corner : corners)
+        if (corner >= vertices.size() / 3) throw std::runtime_error("has an index without a vertex");
     bench_mesh *mesh = allocate<bench_mesh>(1);
-    mesh->vertex_count = static_cast<uint32_t>(surface.vertices.size() / 3);
-    mesh->triangle_count = static_cast<uint32_t>(surface.corners.size() / 3);
-    mesh->vertices = allocate<float>(surface.vertices.size() + 1);
-    mesh->corners = allocate<uint32_t>(surface.corners.size());
-    std::transform(surface.vertices.begin(), surface.vertices.end(), mesh->vertices,
-                   [](double x) { return static_cast<float>(x); });
-    std::copy(surface.corners.begin(), surface.corners.end(), mesh->corners);
+    mesh->vertex_count = static_cast<uint32_t>(vertices.size() / 3);
+    mesh->triangle_count = static_cast<uint32_t>(corners.size() / 3);
+    mesh->vertices = allocate<float>(vertices.size() + 1);
+    mesh->corners = allocate<uint32_t>(corners.size());
+    std::transform(vertices.begin(), vertices.end(), mesh->vertices, [](double x) { return static_cast<float>(x); });
+    std::copy(corners.begin(), corners.end(), mesh->corners);
     return mesh;
 }
 
@@ -45,6 +47,14 @@ double reach(const bench_mesh *mesh, const Imath::M44d &transform) {
     }
     return longest;
 }
+
+/* The cube around a box. */
+struct Fit {
+    explicit Fit(const Imath::Box3d &box)
+        : side(std::max({box.size().x, box.size().y, box.size().z})), lo(box.center() - Imath::V3d(side / 2)) {}
+    double side;
+    Imath::V3d lo;
+};
 
 /* Imath has row vectors, so its rows are the columns of a pose. */
 void place(bench_scene *scene, uint32_t which, const Imath::M44d &transform, const Imath::V3d &lo, double scale) {
@@ -73,19 +83,50 @@ bench_scene *convert(const demo::Model &model) {
         const demo::Model::Part &part = model.parts()[i];
         bench_shape &shape = scene->shapes[i];
         shape.kind = RG_SHAPE_MESH;
-        shape.mesh = copy_mesh(model.surfaces()[part.surface]);
+        const demo::Surface &surface = model.surfaces()[part.surface];
+        shape.mesh = copy_mesh(surface.vertices, surface.corners);
         shape.reach = reach(shape.mesh, transforms[part.node]);
         scene->shape_of[i] = static_cast<uint8_t>(i);
         for (uint32_t v = 0; v < shape.mesh->vertex_count; ++v) {
             box.extendBy(vertex(shape.mesh, v) * transforms[part.node]);
         }
     }
-    const Imath::V3d size = box.size();
-    const double side = std::max({size.x, size.y, size.z});
-    const Imath::V3d lo = box.center() - Imath::V3d(side / 2);
-    for (uint32_t i = 0; i < count; ++i) place(scene, i, transforms[model.parts()[i].node], lo, 1 / side);
+    const Fit fit(box);
+    for (uint32_t i = 0; i < count; ++i) place(scene, i, transforms[model.parts()[i].node], fit.lo, 1 / fit.side);
     bench_settle(scene);
     return scene;
+}
+
+/* The vertices as the file has them: those of a seam are there twice. */
+bench_mesh *join(const demo::Model &model) {
+    const std::vector<Imath::M44d> transforms = model.transforms(0);
+    std::vector<Imath::V3d> points;
+    std::vector<uint32_t> corners;
+    Imath::Box3d box;
+    for (const demo::Model::Part &part : model.parts()) {
+        const demo::Surface &surface = model.surfaces()[part.surface];
+        const uint32_t first = static_cast<uint32_t>(points.size());
+        for (uint32_t corner : surface.corners) corners.push_back(first + corner);
+        for (size_t v = 0; v + 2 < surface.vertices.size(); v += 3) {
+            const double *p = &surface.vertices[v];
+            points.push_back(Imath::V3d(p[0], p[1], p[2]) * transforms[part.node]);
+            box.extendBy(points.back());
+        }
+    }
+    const Fit fit(box);
+    std::vector<double> vertices;
+    for (const Imath::V3d &point : points)
+        for (int k = 0; k < 3; ++k) vertices.push_back((point[k] - fit.lo[k]) / fit.side);
+    return copy_mesh(vertices, corners);
+}
+
+template <typename F> bench_scene *read(const char *path, F make) {
+    try {
+        return make(demo::Model(path, [](const std::string &) {}));
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "%s: %s\n", path, error.what());
+        return nullptr;
+    }
 }
 
 } // namespace
@@ -96,10 +137,12 @@ const char *bench_gltf_usual(void) {
 }
 
 bench_scene *bench_gltf_scene(const char *path) {
-    try {
-        return convert(demo::Model(path, [](const std::string &) {}));
-    } catch (const std::exception &error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return nullptr;
-    }
+    return read(path, convert);
+}
+
+bench_scene *bench_gltf_mesh(const char *path, const char *name) {
+    return read(path, [=](const demo::Model &model) {
+        bench_mesh *mesh = join(model);
+        return bench_scene_of_mesh(name, mesh->triangle_count, mesh);
+    });
 }

@@ -42,11 +42,16 @@ static int kind_of(const char *scene) {
     return is_named(scene, spheres) ? SPHERES : is_named(scene, meshes) ? ONE_MESH : OBJECTS;
 }
 
-/* The one scene that is as large as it is. */
-static void run_on_file(struct bench_run *run, const struct section *section) {
+/* The scenes that are as large as they are. */
+static void run_on_files(struct bench_run *run, const struct section *section) {
     const struct bench_options *options = &run->options;
-    if (!(section->scenes & OBJECTS) || !options->gltf || options->sizes) return;
-    if (bench_wanted(options->scenes, BENCH_GLTF_SCENE)) section->run(run, BENCH_GLTF_SCENE, 0);
+    if (options->sizes) return;
+    if ((section->scenes & OBJECTS) && options->gltf && bench_wanted(options->scenes, BENCH_GLTF_SCENE))
+        section->run(run, BENCH_GLTF_SCENE, 0);
+    for (int i = 0; (section->scenes & ONE_MESH) && i < options->model_count; i++) {
+        const char *scene = options->models[i].scene;
+        if (bench_wanted(options->scenes, scene)) section->run(run, scene, 0);
+    }
 }
 
 static void run_section(struct bench_run *run, const struct section *section) {
@@ -89,7 +94,7 @@ int main(int argc, char **argv) {
     for (size_t i = 0; i < sizeof SECTIONS / sizeof *SECTIONS; i++) {
         if (!bench_wanted(run.options.sections, SECTIONS[i].name)) continue;
         run_section(&run, &SECTIONS[i]);
-        run_on_file(&run, &SECTIONS[i]);
+        run_on_files(&run, &SECTIONS[i]);
     }
     bench_report_end(&run.report);
     bool unwritten = run.report.json && fclose(run.report.json) != 0;

@@ -54,14 +54,16 @@ static const char USAGE[] =
     "  --json FILE           also writes each line of figures as a JSON object\n"
     "What is measured (lists are separated by commas):\n"
     "  --scene LIST          uniform, mixed, stadium, boxes, capsules, mixture, meshes, gltf; and of one\n"
-    "                        mesh: noisy, soup\n"
+    "                        mesh: noisy, soup, and models by their names\n"
     "  --size LIST           numbers of objects, of one mesh triangles, such as 1000,100000\n"
     "  --only LIST           sections: builds, traces, meshes (building one, and new vertices for it), updates,\n"
     "                        frames, lasting, threads, omissions (up to 10000 objects unless sizes are given),\n"
     "                        latency; the last two of the scene uniform\n"
     "  --rays LIST           of traces: primary, shadow, random, random any, each also with 'aimed ' before it\n"
     "  --mode LIST           of traces, rays a call: 1, 16, batch; of latency, grids: loose, hierarchical, uniform\n"
-    "  --gltf FILE           what the scene gltf shows; its size is its own\n"
+    "  --gltf FILE           what the scene gltf shows, each part a mesh; its size is its own\n"
+    "  --model FILE          a glTF file shown as one mesh, the scene of its name, as bunny of bunny.glb; up to 7\n"
+    "                        times; the engine that the demo shows is always there\n"
     "The peer:\n"
     "  --embree WHAT         auto (what the system has; the default), none, or the path of libembree3 or 4\n"
     "  --embree-config TEXT  handed to its rtcNewDevice, such as isa=avx2\n"
@@ -83,6 +85,7 @@ enum {
     RAYS,
     MODE,
     GLTF,
+    MODEL,
     EMBREE,
     EMBREE_CONFIG,
     PEER_SPHERES_AS,
@@ -102,6 +105,7 @@ static const struct option LONG[] = {
     {"mode", required_argument, NULL, MODE},
     {"embree", required_argument, NULL, EMBREE},
     {"gltf", required_argument, NULL, GLTF},
+    {"model", required_argument, NULL, MODEL},
     {"peer-spheres", required_argument, NULL, PEER_SPHERES_AS},
     {"robust", no_argument, NULL, ROBUST},
     {"embree-config", required_argument, NULL, EMBREE_CONFIG},
@@ -116,7 +120,42 @@ static void shorten(struct bench_options *options, const struct bench_effort *ef
     options->largest = options->largest_other = largest;
 }
 
+static bool is_scene(const struct bench_options *options, const char *name) {
+    for (int s = 0; BENCH_SCENES[s]; s++) {
+        if (strcmp(name, BENCH_SCENES[s]) == 0) return true;
+    }
+    for (int i = 0; i < options->model_count; i++) {
+        if (strcmp(name, options->models[i].scene) == 0) return true;
+    }
+    return strcmp(name, BENCH_GLTF_SCENE) == 0;
+}
+
+/* False, after a message, if there can be no scene of that name beside the others. */
+static bool add_model(struct bench_options *options, const char *file) {
+    if (options->model_count == BENCH_MODELS) {
+        fprintf(stderr, "more than %d models\n", BENCH_MODELS);
+        return false;
+    }
+    struct bench_model *model = &options->models[options->model_count];
+    const char *slash = strrchr(file, '/'), *base = slash ? slash + 1 : file, *dot = strrchr(base, '.');
+    int length = (int)(dot ? dot - base : (long)strlen(base));
+    model->file = file;
+    snprintf(model->scene, sizeof model->scene, "%.*s", length, base);
+    if (is_scene(options, model->scene)) {
+        fprintf(stderr, "%s: there is a scene '%s' already\n", file, model->scene);
+        return false;
+    }
+    options->model_count++;
+    return true;
+}
+
 static bool read_one(struct bench_options *options, int option) {
+#if !defined(BENCH_GLTF)
+    if (option == GLTF || option == MODEL) {
+        fputs("built without glTF\n", stderr);
+        return false;
+    }
+#endif
     switch (option) {
     case QUICK_RUN:
         shorten(options, &QUICK, 10000);
@@ -145,6 +184,8 @@ static bool read_one(struct bench_options *options, int option) {
     case GLTF:
         options->gltf = optarg;
         return true;
+    case MODEL:
+        return add_model(options, optarg);
     case EMBREE:
         options->embree = optarg;
         return true;
@@ -174,6 +215,7 @@ bool bench_options_read(struct bench_options *options, int argc, char **argv, in
     options->peer_spheres = "points";
 #if defined(BENCH_GLTF)
     options->gltf = bench_gltf_usual();
+    add_model(options, options->gltf);
 #endif
     int option;
     while ((option = getopt_long(argc, argv, "", LONG, NULL)) != -1) {

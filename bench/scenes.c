@@ -196,31 +196,32 @@ void bench_settle(struct bench_scene *scene) {
     memcpy(scene->homes, scene->positions, scene->count * sizeof *scene->homes);
 }
 
-/* One mesh that fills the cube. */
-static void make_one_mesh(struct bench_scene *scene) {
-    bool soup = strcmp(scene->name, "soup") == 0;
-    struct bench_mesh *mesh = soup ? bench_soup(scene->size) : bench_noisy_sphere(scene->size);
-    add_shape(scene, (struct bench_shape){RG_SHAPE_MESH, {0}, mesh, sqrt(3.0), 1});
-}
-
-static bool names_one_mesh(const char *name) {
-    return strcmp(name, "noisy") == 0 || strcmp(name, "soup") == 0;
-}
-
-struct bench_scene *bench_scene_create(const char *name, uint32_t count) {
+static struct bench_scene *allocate_scene(const char *name, uint32_t size, uint32_t count) {
     struct bench_scene *scene = bench_allocate(1, sizeof *scene);
     scene->name = name;
-    scene->size = count;
-    if (names_one_mesh(name)) count = 1;
+    scene->size = size;
     scene->count = count;
     scene->random = count;
     scene->shapes = bench_allocate(FORMS, sizeof *scene->shapes);
     scene->positions = bench_allocate(count, sizeof *scene->positions);
     scene->scales = bench_allocate(count, sizeof *scene->scales);
     for (uint32_t i = 0; i < count; i++) scene->scales[i] = 1;
-    if (names_one_mesh(name)) {
-        make_one_mesh(scene);
-    } else if (strcmp(name, "mixed") == 0) {
+    return scene;
+}
+
+struct bench_scene *bench_scene_of_mesh(const char *name, uint32_t size, struct bench_mesh *mesh) {
+    struct bench_scene *scene = allocate_scene(name, size, 1);
+    scene->one_mesh = true;
+    add_shape(scene, (struct bench_shape){RG_SHAPE_MESH, {0}, mesh, sqrt(3.0), 1});
+    bench_settle(scene);
+    return scene;
+}
+
+struct bench_scene *bench_scene_create(const char *name, uint32_t count) {
+    if (strcmp(name, "noisy") == 0) return bench_scene_of_mesh(name, count, bench_noisy_sphere(count));
+    if (strcmp(name, "soup") == 0) return bench_scene_of_mesh(name, count, bench_soup(count));
+    struct bench_scene *scene = allocate_scene(name, count, count);
+    if (strcmp(name, "mixed") == 0) {
         make_mixed(scene);
     } else if (strcmp(name, "stadium") == 0) {
         make_stadium(scene);
@@ -252,7 +253,7 @@ rg_pose bench_pose(const struct bench_scene *scene, uint32_t which) {
 }
 
 bool bench_is_one_mesh(const struct bench_scene *scene) {
-    return scene->size != scene->count;
+    return scene->one_mesh;
 }
 
 bool bench_all_spheres(const struct bench_scene *scene) {

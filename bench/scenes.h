@@ -43,6 +43,7 @@ struct bench_scene {
     float (*linears)[9];         /* of each object; NULL: none is turned */
     double aim_lo[3], aim_hi[3]; /* of its cluster, where it has one that rays are aimed at */
     bool has_aim;
+    bool one_mesh; /* and nothing else */
     uint64_t random;
 };
 
@@ -51,6 +52,9 @@ extern const char *const BENCH_SCENES[];
 
 /** One of BENCH_SCENES. */
 struct bench_scene *bench_scene_create(const char *name, uint32_t count);
+
+/** That mesh, which the scene takes over and which fills the unit cube, and nothing else; `size` as lines name it. */
+struct bench_scene *bench_scene_of_mesh(const char *name, uint32_t size, struct bench_mesh *mesh);
 
 /* For those who make a scene: gives each body one of the shapes; turns all but spheres, which no host would turn;
  * makes the present positions the homes. */

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Runs the benchmark as shortly as it can be run: test_bench.py PROGRAM. What it measures then means nothing; how it
 reports does, and that its error columns notice a wrong answer."""
+import base64
 import json
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -110,6 +112,57 @@ class Spoilt(unittest.TestCase):
         done = subprocess.run([PROGRAM, '--nonsense'], capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn('usage', done.stderr)
+
+
+def write_gltf(path, corners):
+    """Two triangles with a side in common, or others of their corners."""
+    positions = struct.pack('<12f', 0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 1)
+    data = positions + struct.pack(f'<{len(corners)}I', *corners)
+    views = [{'buffer': 0, 'byteOffset': 0, 'byteLength': 48},
+             {'buffer': 0, 'byteOffset': 48, 'byteLength': len(data) - 48}]
+    accessors = [
+        {'bufferView': 0, 'componentType': 5126, 'count': 4, 'type': 'VEC3', 'min': [0, 0, 0], 'max': [2, 2, 1]},
+        {'bufferView': 1, 'componentType': 5125, 'count': len(corners), 'type': 'SCALAR'}]
+    uri = 'data:application/octet-stream;base64,' + base64.b64encode(data).decode()
+    with open(path, 'w', encoding='utf-8') as file:
+        json.dump({'asset': {'version': '2.0'}, 'buffers': [{'uri': uri, 'byteLength': len(data)}],
+                   'bufferViews': views, 'accessors': accessors, 'scene': 0, 'scenes': [{'nodes': [0, 1]}],
+                   'nodes': [{'mesh': 0}, {'mesh': 0, 'translation': [0, 0, 1]}],
+                   'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 1}]}]}, file)
+
+
+class Models(unittest.TestCase):
+    """Files that are shown as one mesh."""
+
+    def setUp(self):
+        if subprocess.run([PROGRAM, '--model', 'any.glb', '--help'], capture_output=True).returncode != 0:
+            self.skipTest('built without glTF')
+        folder = tempfile.TemporaryDirectory(prefix='with space ')
+        self.addCleanup(folder.cleanup)
+        self.path = os.path.join(folder.name, 'two sheets.v1.gltf')
+
+    def run_on_file(self, corners):
+        write_gltf(self.path, corners)
+        return run('--embree', 'none', '--model', self.path, '--scene', 'two sheets.v1')
+
+    def test_all_parts_are_one_mesh_of_the_name_of_the_file(self):
+        code, lines, text = self.run_on_file([0, 1, 2, 0, 2, 3])
+        self.assertEqual(code, 0, text)
+        self.assertEqual({line['name'].split('/')[0] for line in lines}, {'traces', 'meshes', 'frames'})
+        self.assertEqual({tuple(line['name'].split('/')[1:3]) for line in lines}, {('two sheets.v1', '4')})
+        self.assertEqual(sum(line['wrong'] or 0 for line in lines), 0)
+
+    def test_corners_that_are_no_vertices_are_refused(self):
+        write_gltf(self.path, [0, 1, 4])
+        done = subprocess.run([PROGRAM, '--selftest', '--model', self.path, '--scene', 'two sheets.v1'],
+                              capture_output=True, text=True)
+        self.assertIn('two sheets.v1.gltf: has an index without a vertex', done.stderr)
+
+    def test_names_of_other_scenes_are_refused(self):
+        for name in 'noisy.glb', 'gltf.gltf', 'folder/2CylinderEngine.glb':
+            done = subprocess.run([PROGRAM, '--selftest', '--model', name], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, name)
+            self.assertIn('already', done.stderr)
 
 
 if __name__ == '__main__':
