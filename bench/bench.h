@@ -22,6 +22,7 @@ struct bench_options {
     struct peer_choice peer;
     const char *embree;        /* auto, none, or the path of its library */
     const char *peer_spheres;  /* how the peer has spheres that stand still: points, user, best */
+    const char *peer_mesh;     /* in which qualities it may have a scene's one mesh that stands still */
     const char *embree_config; /* of its device; NULL: nothing special */
     const char *gltf;          /* the file of the scene of that name; NULL: there is none */
     struct bench_model models[BENCH_MODELS];

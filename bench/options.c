@@ -71,6 +71,7 @@ static const char USAGE[] =
     "  --peer-spheres WHAT   of traces: points (its own sphere points; the default), user (user-defined geometry "
     "with\n"
     "                        vectorised callbacks: faster for packets of coherent rays), best (of both)\n"
+    "  --peer-mesh LIST      of traces of one mesh: medium (the default), high, low; of some the best\n"
     "Tests of the benchmark itself:\n"
     "  --selftest            as little as possible\n"
     "  --spoil               makes raygrid's answers wrong before they are judged: the columns must say so\n"
@@ -89,6 +90,7 @@ enum {
     EMBREE,
     EMBREE_CONFIG,
     PEER_SPHERES_AS,
+    PEER_MESH_AS,
     ROBUST,
     SELFTEST_RUN,
     SPOIL,
@@ -107,6 +109,7 @@ static const struct option LONG[] = {
     {"gltf", required_argument, NULL, GLTF},
     {"model", required_argument, NULL, MODEL},
     {"peer-spheres", required_argument, NULL, PEER_SPHERES_AS},
+    {"peer-mesh", required_argument, NULL, PEER_MESH_AS},
     {"robust", no_argument, NULL, ROBUST},
     {"embree-config", required_argument, NULL, EMBREE_CONFIG},
     {"selftest", no_argument, NULL, SELFTEST_RUN},
@@ -195,6 +198,9 @@ static bool read_one(struct bench_options *options, int option) {
     case PEER_SPHERES_AS:
         options->peer_spheres = optarg;
         return strcmp(optarg, "points") == 0 || strcmp(optarg, "user") == 0 || strcmp(optarg, "best") == 0;
+    case PEER_MESH_AS:
+        options->peer_mesh = optarg;
+        return bench_wanted(optarg, "medium") || bench_wanted(optarg, "high") || bench_wanted(optarg, "low");
     case ROBUST:
         options->peer.robust = true;
         return true;
@@ -213,6 +219,7 @@ bool bench_options_read(struct bench_options *options, int argc, char **argv, in
     options->largest_other = 100000;
     options->embree = "auto";
     options->peer_spheres = "points";
+    options->peer_mesh = PEER_BUILD_NAMES[PEER_MEDIUM];
 #if defined(BENCH_GLTF)
     options->gltf = bench_gltf_usual();
     add_model(options, options->gltf);

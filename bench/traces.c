@@ -14,7 +14,7 @@ struct mode {
 
 static const struct mode MODES[] = {{"1", 1}, {"16", 16}, {"batch", UINT32_MAX}, {NULL, 0}};
 
-enum { MOST_PEERS = 3 };
+enum { MOST_PEERS = 5 };
 
 /* Both sides on one set of rays. */
 struct contest {
@@ -148,16 +148,25 @@ static struct bench_rays *shadows_of(struct contest *contest, const struct bench
     return bench_shadow_rays(primary, contest->own_answers.t);
 }
 
+static bool as_mesh(const struct bench_options *options, enum peer_build build) {
+    return bench_wanted(options->peer_mesh, PEER_BUILD_NAMES[build]);
+}
+
 /* Which ways of having the scene the peer may choose from. */
 static void build_peers(struct contest *contest, const struct bench_options *options) {
     const struct bench_scene *bodies = contest->own->bodies;
     const bool points = strcmp(options->peer_spheres, "user") != 0,
-               user = strcmp(options->peer_spheres, "points") != 0;
+               user = strcmp(options->peer_spheres, "points") != 0, one = bench_is_one_mesh(bodies);
     const struct {
         enum peer_build build;
         bool asked_for;
     } BUILDS[MOST_PEERS] = {
-        {PEER_MEDIUM, points || !bench_all_spheres(bodies)}, {PEER_ARRAY, true}, {PEER_USER, user}};
+        {PEER_MEDIUM, one ? as_mesh(options, PEER_MEDIUM) : points || !bench_all_spheres(bodies)},
+        {PEER_HIGH, one && as_mesh(options, PEER_HIGH)},
+        {PEER_LOW, one && as_mesh(options, PEER_LOW)},
+        {PEER_ARRAY, true},
+        {PEER_USER, user},
+    };
     int count = 0;
     for (int b = 0; options->peer.api && b < MOST_PEERS; b++) {
         if (!BUILDS[b].asked_for || !peer_can(&options->peer, bodies, BUILDS[b].build)) continue;
