@@ -42,12 +42,12 @@ static const struct {
     [GOAL_INSTANCES_MOVED] = {{20, 100, 500, 500}, 1},
 };
 
-struct bench_goal bench_goal(enum bench_aim aim, uint32_t count) {
-    int column = (int)lround(log10(count)) - 3;
-    column = column < 0 ? 0 : column > 3 ? 3 : column;
-    return (struct bench_goal){TABLE[aim].value[column], TABLE[aim].on_ratio};
-}
-
 struct bench_goal bench_no_goal(void) {
     return (struct bench_goal){NAN, 0};
+}
+
+struct bench_goal bench_goal(enum bench_aim aim, uint32_t count) {
+    int column = (int)lround(log10(count)) - 3;
+    if (column < 0) return bench_no_goal();
+    return (struct bench_goal){TABLE[aim].value[column > 3 ? 3 : column], TABLE[aim].on_ratio};
 }

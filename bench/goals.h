@@ -49,7 +49,7 @@ enum bench_aim {
     GOALS
 };
 
-/** The goal for a scene of `count` objects: that of the nearest power of ten. */
+/** The goal for a scene of `count` objects: that of the nearest power of ten; there are none below 10^3. */
 struct bench_goal bench_goal(enum bench_aim aim, uint32_t count);
 
 struct bench_goal bench_no_goal(void);

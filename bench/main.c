@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LARGEST = 1000000 }; /* objects */
+enum { SMALLEST = 100, LARGEST = 1000000 }; /* objects */
 
 /* Kinds of scenes. */
 enum { SPHERES = 1, OBJECTS = 2, ONE_MESH = 4 };
@@ -61,10 +61,12 @@ static void run_section(struct bench_run *run, const struct section *section) {
         int kind = kind_of(scene);
         if (!bench_wanted(options->scenes, scene) || !(section->scenes & kind)) continue;
         uint32_t largest = kind == OBJECTS ? options->largest_other : options->largest;
-        for (uint32_t count = 1000; count <= LARGEST; count *= 10) {
+        /* Unasked the smallest size is that of instances alone: other scenes have no goals there. */
+        uint32_t smallest = strcmp(scene, "meshes") == 0 ? SMALLEST : 10 * SMALLEST;
+        for (uint32_t count = SMALLEST; count <= LARGEST; count *= 10) {
             char size[16];
             snprintf(size, sizeof size, "%u", count);
-            if (options->sizes ? bench_wanted(options->sizes, size) : count <= largest)
+            if (options->sizes ? bench_wanted(options->sizes, size) : count >= smallest && count <= largest)
                 section->run(run, scene, count);
         }
     }

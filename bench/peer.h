@@ -14,9 +14,10 @@ enum peer_build {
     PEER_MEDIUM,
     PEER_HIGH,
     PEER_LOW,
-    PEER_ARRAY, /* medium, instances as one array of them: built low, Embree 4.4.0 crashes when traced */
-    PEER_REFIT, /* each geometry's boxes fitted anew in the tree as it was; not where there are instances */
-    PEER_USER,  /* medium, spheres as user-defined geometry */
+    PEER_ARRAY,       /* medium, instances as one array of them: built low, Embree 4.4.0 crashes when traced */
+    PEER_REFIT,       /* each geometry's boxes fitted anew in the tree as it was; not where there are instances */
+    PEER_ARRAY_REFIT, /* the same of an array of instances: Embree 4.4.0 then answers most rays wrongly */
+    PEER_USER,        /* medium, spheres as user-defined geometry */
     PEER_USER_LOW,
     PEER_USER_REFIT, /* fitted anew as in PEER_REFIT; sphere points are built anew even so */
     PEER_BUILDS

@@ -8,8 +8,9 @@
 #include <string.h>
 
 const char *const PEER_BUILD_NAMES[PEER_BUILDS] = {
-    [PEER_MEDIUM] = "medium", [PEER_HIGH] = "high", [PEER_LOW] = "low",           [PEER_ARRAY] = "array",
-    [PEER_REFIT] = "refit",   [PEER_USER] = "user", [PEER_USER_LOW] = "user low", [PEER_USER_REFIT] = "user refit",
+    [PEER_MEDIUM] = "medium", [PEER_HIGH] = "high",         [PEER_LOW] = "low",
+    [PEER_ARRAY] = "array",   [PEER_REFIT] = "refit",       [PEER_ARRAY_REFIT] = "array refit",
+    [PEER_USER] = "user",     [PEER_USER_LOW] = "user low", [PEER_USER_REFIT] = "user refit",
 };
 
 /* How the coordinates of a member lie: points with a radius, or corners; a float of room at the end, as is asked. */
@@ -143,7 +144,7 @@ static int geometry_quality(enum peer_build build) {
         [PEER_MEDIUM] = RTC_BUILD_QUALITY_MEDIUM,    [PEER_HIGH] = RTC_BUILD_QUALITY_HIGH,
         [PEER_LOW] = RTC_BUILD_QUALITY_LOW,          [PEER_ARRAY] = RTC_BUILD_QUALITY_MEDIUM,
         [PEER_REFIT] = RTC_BUILD_QUALITY_REFIT,      [PEER_USER_LOW] = RTC_BUILD_QUALITY_LOW,
-        [PEER_USER_REFIT] = RTC_BUILD_QUALITY_REFIT,
+        [PEER_USER_REFIT] = RTC_BUILD_QUALITY_REFIT, [PEER_ARRAY_REFIT] = RTC_BUILD_QUALITY_REFIT,
     };
     return QUALITIES[build];
 }
@@ -283,9 +284,9 @@ static bool has_meshes(const struct bench_scene *bodies) {
 bool peer_can(const struct peer_choice *choice, const struct bench_scene *bodies, enum peer_build build) {
     bool spheres = bench_all_spheres(bodies);
     if (defines_spheres(build)) return spheres;
-    if (bench_is_one_mesh(bodies)) return build != PEER_ARRAY;
+    if (bench_is_one_mesh(bodies)) return !has_arrays(build);
     if (build == PEER_REFIT) return !spheres && !has_meshes(bodies);
-    return build != PEER_ARRAY || (choice->api->version >= 40400 && only_mesh(bodies) >= 0);
+    return !has_arrays(build) || (choice->api->version >= 40400 && only_mesh(bodies) >= 0);
 }
 
 struct peer *peer_create(const struct peer_choice *choice, const struct bench_scene *bodies, enum peer_build build) {
@@ -296,7 +297,7 @@ struct peer *peer_create(const struct peer_choice *choice, const struct bench_sc
     peer->build = build;
     peer->bytes = -api->bytes;
     peer->scene = api->rtcNewScene(peer->api->device);
-    bool refitted = build == PEER_REFIT || build == PEER_USER_REFIT;
+    bool refitted = geometry_quality(build) == RTC_BUILD_QUALITY_REFIT;
     bool moving = build == PEER_LOW || build == PEER_USER_LOW || refitted;
     api->rtcSetSceneFlags(peer->scene,
                           (moving ? RTC_SCENE_FLAG_DYNAMIC : 0) | (choice->robust ? RTC_SCENE_FLAG_ROBUST : 0));

@@ -35,9 +35,13 @@ static inline bool defines_spheres(enum peer_build build) {
     return build == PEER_USER || build == PEER_USER_LOW || build == PEER_USER_REFIT;
 }
 
-/** Whether its instances are one geometry. */
+/** Whether it has its instances as one geometry. */
+static inline bool has_arrays(enum peer_build build) {
+    return build == PEER_ARRAY || build == PEER_ARRAY_REFIT;
+}
+
 static inline bool in_array(const struct peer *peer) {
-    return peer->build == PEER_ARRAY;
+    return has_arrays(peer->build);
 }
 
 #endif

@@ -83,6 +83,14 @@ class Lines(unittest.TestCase):
             if line['unit'] == 'Mrays/s':
                 self.assertIsNotNone(line['checked'], line['name'])
 
+    def test_meshes_deform(self):
+        deformed = [line for line in self.lines if line['name'].startswith('frames/')
+                    and line['name'].endswith('/new vertices')]
+        self.assertGreaterEqual({line['name'].split('/')[1] for line in deformed}, {'noisy', 'soup'})
+        for line in deformed:
+            self.assertIsNotNone(line['checked'], line['name'])
+            self.assertIsNone(line['goal'], line['name'])
+
     def test_goals_are_held_against_what_they_are_about(self):
         for line in self.lines:
             if line['reached'] is None:
@@ -95,6 +103,32 @@ class Lines(unittest.TestCase):
         text = table.markdown(self.lines)
         for line in self.lines:
             self.assertIn('| ' + line['name'].split('/', 1)[1] + ' |', text)
+
+
+class Instances(unittest.TestCase):
+    """Of one mesh: what their goals are, by their number."""
+
+    @classmethod
+    def setUpClass(cls):
+        _, lines, _ = run('--embree', 'none', '--only', 'traces,updates', '--scene', 'meshes', '--mode', 'batch',
+                          '--size', '100,1000,10000,100000')
+        cls.goals = {line['name']: (line['goal'], line['goal_on']) for line in lines}
+
+    def test_few_have_no_goals(self):
+        few = [goal for name, goal in self.goals.items() if '/100/' in name]
+        self.assertTrue(few)
+        self.assertEqual(set(few), {(None, None)})
+
+    def test_rays(self):
+        for size, incoherent in (1000, 1.5), (10000, 2), (100000, 2.5):
+            for rays, goal in ('primary', 2), ('shadow', 2), ('random', incoherent), ('random any', incoherent):
+                self.assertEqual(self.goals[f'traces/meshes/{size}/{rays}/batch'], (goal, 'ratio, at least'))
+
+    def test_moves(self):
+        for size, goal in (10000, 100), (100000, 500):
+            for step in 0.1, 1:
+                name = f'updates/meshes/{size}/move 1 % by {step} r'
+                self.assertEqual(self.goals[name], (goal, 'ratio, at least'))
 
 
 class Spoilt(unittest.TestCase):

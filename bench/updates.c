@@ -244,6 +244,20 @@ static void measure_exchange(struct changes *changes) {
     report(changes, "remove one", &duel, spheres ? bench_goal(GOAL_REMOVE, bodies) : bench_no_goal());
 }
 
+/* Less than any right answer costs the peer, and wrong: how fast it could be, and why that does not count. */
+static void measure_wrong_way(struct changes *changes) {
+    const struct peer_choice *choice = &changes->run->options.peer;
+    if (!choice->api || !peer_can(choice, changes->bodies, PEER_ARRAY_REFIT)) return;
+    if (strcmp(changes->bodies->name, "meshes") != 0) return;
+    changes->peer = peer_create(choice, changes->bodies, PEER_ARRAY_REFIT);
+    changes->step = 1;
+    set_count(changes, changes->bodies->count / 100);
+    struct bench_duel duel = fight(changes, turn_of_moves, turn_of_peer_moves);
+    report(changes, "move 1 % by 1 r, its wrong way", &duel, bench_no_goal());
+    peer_destroy(changes->peer);
+    changes->peer = NULL;
+}
+
 /* The way to move that costs the peer least. What its rays then cost is for frames.c to say. */
 static enum peer_build quickest_build(struct changes *changes) {
     static const enum peer_build BUILDS[] = {PEER_LOW, PEER_ARRAY, PEER_REFIT, PEER_USER_LOW, PEER_USER_REFIT};
@@ -282,6 +296,7 @@ void bench_updates(struct bench_run *run, const char *scene, uint32_t count) {
     measure_many_moves(changes);
     peer_destroy(changes->peer);
     changes->peer = NULL;
+    measure_wrong_way(changes);
     if (choice->api && bench_all_spheres(changes->bodies)) {
         changes->peer = peer_create(choice, changes->bodies, PEER_LOW);
     }
