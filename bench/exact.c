@@ -127,9 +127,17 @@ static double triangles_of(const struct bench_scene *bodies) {
     return most;
 }
 
+/* Anywhere in the `part`th of so many equal parts: every so many rays of a picture could all be of one column. */
+static uint32_t choose_ray(const struct bench_rays *rays, uint32_t part, uint32_t parts, uint64_t *random) {
+    uint64_t first = (uint64_t)part * rays->count / parts, end = (uint64_t)(part + 1) * rays->count / parts;
+    return (uint32_t)first + (uint32_t)((double)(end - first) * bench_random(random));
+}
+
 struct exact_sample *exact_sample_create(struct exact *exact, const struct bench_rays *rays, double effort) {
     /* Each near body is tested in full, some ten a ray; a triangle in long double costs as much as ten near tests. */
-    double each = exact->bodies->count + 1000 + 100 * triangles_of(exact->bodies);
+    double near = fmin(exact->bodies->count, 10);
+    double each = exact->bodies->count + 1000 + near * 10 * triangles_of(exact->bodies);
+    uint64_t random = 7;
     struct exact_sample *sample = bench_allocate(1, sizeof *sample);
     sample->exact = exact;
     sample->rays = rays;
@@ -137,7 +145,7 @@ struct exact_sample *exact_sample_create(struct exact *exact, const struct bench
     if (sample->count > rays->count) sample->count = rays->count;
     sample->truths = bench_allocate(sample->count, sizeof *sample->truths);
     for (uint32_t i = 0; i < sample->count; i++) {
-        uint32_t which = (uint32_t)((uint64_t)i * rays->count / sample->count);
+        uint32_t which = choose_ray(rays, i, sample->count, &random);
         rg_ray ray = bench_ray(rays, which);
         find_near(exact, &ray);
         sample->truths[i] = find_hit(exact, &ray, NOBODY, 0, EXACT_PROMISED);
