@@ -23,12 +23,12 @@ void rgi_mesh_set_frame(rgi_mesh *mesh) {
     for (int a = 0; a < 3; a++) {
         double middle = 0.5 * mesh->lo[a] + 0.5 * mesh->hi[a];
         half[a] = 0.5 * mesh->hi[a] - 0.5 * mesh->lo[a];
-        mesh->origin[a] = mesh->vertices ? middle : 0;
+        mesh->origin[a] = mesh->exact ? 0 : middle;
         mesh->middle.centre[a] = middle - mesh->origin[a];
     }
     mesh->scale = 1;
     double widest = rgi_max_magnitude(half);
-    if (mesh->vertices) mesh->scale = 1 / rgi_power_of_two_near(rgi_max(widest, 0x1p-500));
+    if (!mesh->exact) mesh->scale = 1 / rgi_power_of_two_near(rgi_max(widest, 0x1p-500));
     mesh->middle.radius = sqrt(rgi_dot(half, half)) * (1 + 0x1p-40) + 0x1p-40 * largest;
     mesh->middle.extent = 0;
     for (int a = 0; a < 3; a++) {
@@ -45,15 +45,24 @@ void rgi_mesh_set_support(rgi_mesh *mesh, const rgi_reaches *reaches) {
     rgi_support_init(&mesh->support, reaches, mesh->lo, mesh->hi, mesh->origin, mesh->scale, (double)mesh->pad);
 }
 
-static rg_result make_room(rgi_making *m, bool floats) {
+static rg_result make_room(rgi_making *m, const rg_mesh_views *views, bool floats) {
     rgi_mesh *mesh = m->mesh;
-    rgi_memory *memory = mesh->memory;
     rg_result result = RG_OK;
-    if (!(floats && rgi_mesh_fits_floats(mesh)))
-        result =
-            rgi_allocate(memory, mesh->vertex_count, sizeof *mesh->vertices, "a mesh's vertices", &mesh->vertices);
-    if (!result) result = rgi_allocate(memory, mesh->vertex_count, sizeof *m->at, "building a mesh", &m->at);
+    mesh->exact = floats && rgi_mesh_fits_floats(mesh);
+    if (!mesh->exact) result = rgi_vertices_keep(mesh, views);
+    if (!result) result = rgi_allocate(mesh->memory, mesh->vertex_count, sizeof *m->at, "building a mesh", &m->at);
     return result;
+}
+
+/* The corners that a soup needs to find its vertices, where these do not come in order. */
+static void place_corners(rgi_making *m, const rg_mesh_views *views, const rgi_mesh *like) {
+    if (!m->mesh->soup || m->in_order) return;
+    if (views->released && !like) {
+        m->mesh->lent_corners = views->indices;
+        return;
+    }
+    m->mesh->corners = m->triangles;
+    m->triangles = NULL;
 }
 
 /* A connected mesh has half as many vertices as triangles, a soup three times as many. */
@@ -67,17 +76,14 @@ static rg_result make(rgi_making *m, const rg_mesh_views *views, const rgi_mesh 
     mesh->soup = mesh->vertex_count > mesh->triangle_count;
     m->fill = mesh->soup ? RGI_SOUP_LEAF : CONNECTED_FILL;
     if (!result) result = rgi_triangles_copy(m, views, like);
-    if (!result) result = make_room(m, floats);
+    if (!result) result = make_room(m, views, floats);
     if (result) return result;
     rgi_mesh_set_frame(mesh);
     rgi_vertices_copy(m, views);
     result = m->fast ? rgi_runs_make(m) : rgi_items_make(m);
     if (!result) result = rgi_branches_make(m);
     if (!result) result = rgi_lines_make(m);
-    if (!result && mesh->soup && !m->in_order) {
-        mesh->corners = m->triangles;
-        m->triangles = NULL;
-    }
+    if (!result) place_corners(m, views, like);
     return result;
 }
 
@@ -127,7 +133,7 @@ void rgi_mesh_destroy(rgi_mesh *mesh) {
     rgi_release(memory, mesh->corners, mesh->triangle_count, sizeof *mesh->corners);
     rgi_release(memory, mesh->numbers, mesh->leaf_count, sizeof *mesh->numbers);
     rgi_release(memory, mesh->lines, mesh->line_count, RGI_MESH_LINE);
-    rgi_release(memory, mesh->vertices, mesh->vertex_count, sizeof *mesh->vertices);
+    rgi_release(memory, mesh->kept_vertices, mesh->vertex_count, sizeof *mesh->kept_vertices);
     rgi_release(memory, mesh, 1, sizeof *mesh);
 }
 
@@ -167,8 +173,8 @@ static void read_leaves(const rgi_mesh *mesh, rgi_mesh_ref ref, const wanted *w)
 
 void rgi_mesh_read_vertices(const rgi_mesh *mesh, double (*vertices)[3]) {
     const wanted w = {vertices, NULL};
-    if (mesh->vertices) {
-        memcpy(vertices, mesh->vertices, mesh->vertex_count * sizeof *vertices);
+    if (!mesh->exact) {
+        for (uint32_t i = 0; i < mesh->vertex_count; i++) rgi_load3(&mesh->vertices, i, vertices[i]);
         return;
     }
     memset(vertices, 0, mesh->vertex_count * sizeof *vertices);

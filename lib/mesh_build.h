@@ -94,7 +94,10 @@ bool rgi_mesh_fits_floats(const rgi_mesh *mesh);
 /** The triangles, those of `like` if it is not NULL, and the box around them. RG_INVALID_VALUE, RG_OUT_OF_MEMORY. */
 rg_result rgi_triangles_copy(rgi_making *making, const rg_mesh_views *views, const rgi_mesh *like);
 
-/** The vertices, into the frame and the mesh. */
+/** Room for the vertices in double, or where the caller has them if they are borrowed. RG_OUT_OF_MEMORY. */
+rg_result rgi_vertices_keep(rgi_mesh *mesh, const rg_mesh_views *views);
+
+/** The vertices, into the frame and, if they are kept, into the mesh. */
 void rgi_vertices_copy(rgi_making *making, const rg_mesh_views *views);
 
 /**

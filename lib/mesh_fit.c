@@ -70,21 +70,18 @@ typedef struct box {
 typedef struct refill {
     const rgi_mesh *old;
     rgi_mesh *mesh;
-    const rg_input3 *vertices;
-    rgi_reaches *reaches; /* of the leaves so far */
+    const rg_input3 *given;    /* vertices */
+    const rg_input3 *vertices; /* the same, where the mesh keeps them if it does */
+    rgi_reaches *reaches;      /* of the leaves so far */
 } refill;
 
 /* A vertex in the frame. */
 static inline void load_vertex(const refill *r, uint32_t vertex, float *to, uint32_t apart) {
     const rgi_mesh *mesh = r->mesh;
     double v[3];
-    if (mesh->vertices) {
-        for (uint32_t a = 0; a < 3; a++)
-            to[a * apart] = (float)((mesh->vertices[vertex][a] - mesh->origin[a]) * mesh->scale);
-        return;
-    }
     rgi_load3(r->vertices, vertex, v);
-    for (uint32_t a = 0; a < 3; a++) to[a * apart] = (float)v[a];
+    for (uint32_t a = 0; a < 3; a++)
+        to[a * apart] = (float)(mesh->exact ? v[a] : (v[a] - mesh->origin[a]) * mesh->scale);
 }
 
 static void refill_leaf(const refill *r, const rgi_mesh_leaf *old, rgi_mesh_leaf *leaf) {
@@ -112,10 +109,7 @@ static void fetch_vertices(const refill *r, rgi_mesh_ref ref) {
     for (uint32_t k = 0; k < (numbers ? RGI_LEAF : RGI_SOUP_LEAF); k++) {
         if (!numbers && rgi_mesh_primitive(mesh, leaf, k) == RGI_NO_TRIANGLE) return;
         uint32_t vertex = numbers ? numbers[k] : rgi_mesh_vertex(mesh, leaf, k, 0);
-        if (mesh->vertices)
-            __builtin_prefetch(mesh->vertices[vertex]);
-        else
-            __builtin_prefetch(rgi_record(r->vertices->x, r->vertices->stride, vertex));
+        __builtin_prefetch(rgi_record(r->vertices->x, r->vertices->stride, vertex));
     }
 }
 
@@ -156,23 +150,28 @@ static void refill_below(const refill *r, rgi_mesh_ref ref, box *out) {
     r->mesh->kernels->measure_leaf(r->mesh, at, r->reaches, out->lo, out->hi);
 }
 
+static inline void grow_by(const rg_input3 *vertices, uint32_t vertex, double lo[3], double hi[3]) {
+    double v[3];
+    rgi_load3(vertices, vertex, v);
+    rgi_grow(lo, hi, v, v);
+}
+
 /* The vertices that are kept in double, the box of those that triangles use, and the frame around it. */
 static void refill_vertices(const refill *r) {
     rgi_mesh *mesh = r->mesh;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++) rgi_load3(r->vertices, i, mesh->vertices[i]);
-    rgi_empty_box(mesh->lo, mesh->hi);
+    const rg_input3 given = *r->given, vertices = *r->vertices;
+    double lo[3], hi[3];
+    for (uint32_t i = 0; i < mesh->vertex_count && mesh->kept_vertices; i++)
+        rgi_load3(&given, i, mesh->kept_vertices[i]);
+    rgi_empty_box(lo, hi);
     for (uint32_t l = 0; l < mesh->leaf_count; l++) {
-        for (uint32_t k = 0; k < RGI_LEAF; k++) {
-            const double *v = mesh->vertices[mesh->numbers[l][k]];
-            rgi_grow(mesh->lo, mesh->hi, v, v);
-        }
+        for (uint32_t k = 0; k < RGI_LEAF; k++) grow_by(&vertices, mesh->numbers[l][k], lo, hi);
     }
     for (uint32_t t = 0; t < mesh->triangle_count && mesh->soup; t++) {
-        for (uint32_t c = 0; c < 3; c++) {
-            const double *v = mesh->vertices[mesh->corners ? mesh->corners[t][c] : 3 * t + c];
-            rgi_grow(mesh->lo, mesh->hi, v, v);
-        }
+        for (uint32_t c = 0; c < 3; c++) grow_by(&vertices, rgi_mesh_corner(mesh, t, c), lo, hi);
     }
+    rgi_copy(lo, mesh->lo);
+    rgi_copy(hi, mesh->hi);
     rgi_mesh_set_frame(mesh);
 }
 
@@ -181,16 +180,16 @@ static void refill_vertices(const refill *r) {
 static bool refill_mesh(const refill *r, bool floats) {
     rgi_mesh *mesh = r->mesh;
     box all;
-    if (mesh->vertices) {
+    if (!mesh->exact) {
         refill_vertices(r);
         if (floats && rgi_mesh_fits_floats(mesh)) return false;
     }
     refill_below(r, mesh->root, &all);
-    for (int a = 0; a < 3 && !mesh->vertices; a++) {
+    for (int a = 0; a < 3 && mesh->exact; a++) {
         mesh->lo[a] = (double)all.lo[a];
         mesh->hi[a] = (double)all.hi[a];
     }
-    if (!mesh->vertices) {
+    if (mesh->exact) {
         rgi_mesh_set_frame(mesh);
         if (!rgi_mesh_fits_floats(mesh)) return false;
     }
@@ -198,36 +197,42 @@ static bool refill_mesh(const refill *r, bool floats) {
     return true;
 }
 
-/* An array of the old mesh, copied if there is one. */
-static rg_result copy_array(rgi_memory *memory, const void *old, uint64_t count, size_t size, void *out) {
-    void *copy;
-    if (!old) return RG_OK;
-    rg_result result = rgi_allocate(memory, count, size, "a mesh", &copy);
-    if (result) return result;
-    memcpy(copy, old, count * size);
-    memcpy(out, &copy, sizeof copy);
-    return RG_OK;
+static rg_result copy_numbers(const rgi_mesh *old, rgi_mesh *mesh) {
+    if (!old->numbers) return RG_OK;
+    rg_result result =
+        rgi_allocate(mesh->memory, mesh->leaf_count, sizeof *mesh->numbers, "a mesh's leaves", &mesh->numbers);
+    if (!result) memcpy(mesh->numbers, old->numbers, mesh->leaf_count * sizeof *mesh->numbers);
+    return result;
+}
+
+/* Also what the old mesh borrows, for which its host answers to the old mesh alone. */
+static rg_result copy_corners(const rgi_mesh *old, rgi_mesh *mesh) {
+    if (!old->corners && !old->lent_corners.x) return RG_OK;
+    rg_result result =
+        rgi_allocate(mesh->memory, mesh->triangle_count, sizeof *mesh->corners, "a mesh's triangles", &mesh->corners);
+    for (uint32_t t = 0; t < mesh->triangle_count && !result; t++) {
+        for (uint32_t c = 0; c < 3; c++) mesh->corners[t][c] = rgi_mesh_corner(old, t, c);
+    }
+    return result;
 }
 
 /* A copy with room for the tree and the vertices, which are not there yet. */
-static rg_result copy_mesh(rgi_memory *memory, const rgi_mesh *old, rgi_mesh **out) {
+static rg_result copy_mesh(rgi_memory *memory, const rgi_mesh *old, const rg_mesh_views *views, rgi_mesh **out) {
     rgi_mesh *mesh;
     rg_result result = rgi_allocate(memory, 1, sizeof *mesh, "a mesh", &mesh);
     if (result) return result;
     *mesh = *old;
     mesh->memory = memory;
     mesh->lines = NULL;
-    mesh->vertices = NULL;
     mesh->numbers = NULL;
+    mesh->kept_vertices = NULL;
     mesh->corners = NULL;
+    memset(&mesh->lent_corners, 0, sizeof mesh->lent_corners);
     *out = mesh;
     result = rgi_allocate(memory, mesh->line_count, RGI_MESH_LINE, "a mesh's tree", &mesh->lines);
-    if (!result && old->vertices)
-        result =
-            rgi_allocate(memory, mesh->vertex_count, sizeof *mesh->vertices, "a mesh's vertices", &mesh->vertices);
-    if (!result) result = copy_array(memory, old->numbers, mesh->leaf_count, sizeof *mesh->numbers, &mesh->numbers);
-    if (!result)
-        result = copy_array(memory, old->corners, mesh->triangle_count, sizeof *mesh->corners, &mesh->corners);
+    if (!result && !mesh->exact) result = rgi_vertices_keep(mesh, views);
+    if (!result) result = copy_numbers(old, mesh);
+    if (!result) result = copy_corners(old, mesh);
     return result;
 }
 
@@ -240,15 +245,16 @@ rg_result rgi_mesh_deform(rgi_memory *memory, const rgi_mesh *old, const rgi_mes
                         old->vertex_count);
     rg_result result = rgi_mesh_check(views, &floats);
     if (result) return result;
-    if (!floats && !old->vertices) return rgi_mesh_create(memory, views, how, old, out);
-    result = copy_mesh(memory, old, &mesh);
-    rgi_reaches reaches;
-    rgi_reaches_empty(&reaches);
-    const refill r = {old, mesh, &views->vertices, &reaches};
-    bool fits = !result && refill_mesh(&r, floats) && rgi_mesh_settle(mesh, mesh->pad) <= WORN * mesh->cost;
-    if (fits) {
-        *out = mesh;
-        return RG_OK;
+    if (!floats && old->exact) return rgi_mesh_create(memory, views, how, old, out);
+    result = copy_mesh(memory, old, views, &mesh);
+    if (!result) {
+        rgi_reaches reaches;
+        rgi_reaches_empty(&reaches);
+        const refill r = {old, mesh, &views->vertices, mesh->exact ? &views->vertices : &mesh->vertices, &reaches};
+        if (refill_mesh(&r, floats) && rgi_mesh_settle(mesh, mesh->pad) <= WORN * mesh->cost) {
+            *out = mesh;
+            return RG_OK;
+        }
     }
     rgi_mesh_destroy(mesh);
     return result ? result : rgi_mesh_create(memory, views, how, old, out);

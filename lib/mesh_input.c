@@ -59,16 +59,27 @@ bool rgi_mesh_fits_floats(const rgi_mesh *mesh) {
     return largest >= EXACT_LEAST && largest <= EXACT_MOST;
 }
 
+rg_result rgi_vertices_keep(rgi_mesh *mesh, const rg_mesh_views *views) {
+    if (views->released) {
+        mesh->vertices = views->vertices;
+        return RG_OK;
+    }
+    rg_result result = rgi_allocate(mesh->memory, mesh->vertex_count, sizeof *mesh->kept_vertices,
+                                    "a mesh's vertices", &mesh->kept_vertices);
+    if (!result) mesh->vertices = rg_input3_packed(mesh->kept_vertices, sizeof *mesh->kept_vertices, RG_F64);
+    return result;
+}
+
 void rgi_vertices_copy(rgi_making *m, const rg_mesh_views *views) {
     const rgi_mesh *mesh = m->mesh;
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         float *at = m->at[i];
         double v[3];
         rgi_load3(&views->vertices, i, v);
-        if (mesh->vertices) rgi_copy(v, mesh->vertices[i]);
+        if (mesh->kept_vertices) rgi_copy(v, mesh->kept_vertices[i]);
         for (int a = 0; a < 3; a++) {
             /* Vertices that no triangle uses may lie anywhere. */
-            double in_frame = mesh->vertices ? (v[a] - mesh->origin[a]) * mesh->scale : v[a];
+            double in_frame = mesh->exact ? v[a] : (v[a] - mesh->origin[a]) * mesh->scale;
             at[a] = (float)rgi_min(rgi_max(in_frame, -0x1p60), 0x1p60);
         }
         at[3] = 0;

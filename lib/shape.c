@@ -214,7 +214,7 @@ static const rg_shape_config default_config = {sizeof(rg_shape_config), {NULL, N
 enum {
     MAX_WORKERS = 1024,
     CONFIG_LEAST = offsetof(rg_shape_config, quality),
-    MESH_LEAST = sizeof(rg_mesh_views),
+    MESH_LEAST = offsetof(rg_mesh_views, released),
     USER_LEAST = sizeof(rg_user_shape),
     REPORT_LEAST = sizeof(rg_shape_report)
 };
@@ -396,6 +396,13 @@ static rg_result create_mesh(const rg_shape_config *config, const rgi_mesh *old,
     rgi_copy(shape->of.mesh->lo, shape->lo);
     rgi_copy(shape->of.mesh->hi, shape->hi);
     *out = shape;
+    if (!views.released) return RG_OK;
+    if (rgi_mesh_borrows(shape->of.mesh)) {
+        shape->released = views.released;
+        shape->released_user = views.user;
+    } else {
+        views.released(views.user);
+    }
     return RG_OK;
 }
 
@@ -442,6 +449,7 @@ void rgi_shape_put_aside(rg_shape *shape, rg_shape **list) {
 static void destroy(rg_shape *shape) {
     if (shape->kind == RG_SHAPE_MESH) rgi_mesh_destroy(shape->of.mesh);
     if (shape->kind == RG_SHAPE_USER && shape->of.user.destroy) shape->of.user.destroy(shape->of.user.user);
+    if (shape->released) shape->released(shape->released_user);
     rgi_memory memory = shape->memory;
     rgi_release(&memory, shape, 1, sizeof *shape);
 }

@@ -11,8 +11,10 @@ struct rg_shape {
     rgi_memory memory;
     uint32_t references; /* atomic */
     rg_shape_kind kind;
-    struct rg_shape *next; /* of a list of those put aside */
-    double lo[3], hi[3];   /* the local box; for a box the box itself */
+    struct rg_shape *next;        /* of a list of those put aside */
+    double lo[3], hi[3];          /* the local box; for a box the box itself */
+    void (*released)(void *user); /* of a mesh that has borrowed: what it is to call when it has ended; else NULL */
+    void *released_user;
     union {
         double radius; /* sphere */
         rgi_capsule capsule;

@@ -33,8 +33,8 @@ typedef struct rgi_triangle_meeting {
 
 /** The corners of a triangle of a leaf, as they were given. */
 static inline void rgi_triangle_corners(const rgi_mesh *mesh, const void *leaf, uint32_t triangle, double v[3][3]) {
-    if (mesh->vertices) {
-        for (uint32_t c = 0; c < 3; c++) rgi_copy(mesh->vertices[rgi_mesh_vertex(mesh, leaf, triangle, c)], v[c]);
+    if (!mesh->exact) {
+        for (uint32_t c = 0; c < 3; c++) rgi_load3(&mesh->vertices, rgi_mesh_vertex(mesh, leaf, triangle, c), v[c]);
     } else if (mesh->soup) {
         const rgi_soup_leaf *l = leaf;
         for (int c = 0; c < 3; c++)

@@ -114,7 +114,7 @@ enum { RG_F64 = 0, RG_F32 = 1, RG_U8 = 2, RG_U16 = 3, RG_U32 = 4, RG_U64 = 5 };
  * all records the same value. `data` NULL means: not given, or not wanted. Three-component views have a pointer for
  * each component, so that {x,y,z} records, three separate arrays, and any NumPy layout are used where they lie.
  * A NULL x means the view is not given; then y and z are ignored. The memory stays the host's and is only touched
- * during the call.
+ * during the call, unless the host lends it for longer (rg_mesh_views.released).
  */
 
 /** One number a record, read. */

@@ -52,12 +52,14 @@ FIELD(rg_shape_config, workers, 36);
 FIELD(rg_shape_config, parallel_for, 40);
 FIELD(rg_shape_config, parallel_for_user, 48);
 
-SIZE(rg_mesh_views, 104);
+SIZE(rg_mesh_views, 120);
 FIELD(rg_mesh_views, size, 0);
 FIELD(rg_mesh_views, vertices, 8);
 FIELD(rg_mesh_views, vertex_count, 48);
 FIELD(rg_mesh_views, indices, 56);
 FIELD(rg_mesh_views, triangle_count, 96);
+FIELD(rg_mesh_views, released, 104);
+FIELD(rg_mesh_views, user, 112);
 
 SIZE(rg_local_ray, 64);
 FIELD(rg_local_ray, origin, 0);

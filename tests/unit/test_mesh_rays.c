@@ -231,7 +231,7 @@ START_TEST(the_form_of_the_data_changes_no_bit) {
         }
     }
     for (int form = 0; form < 2 * FORMS; form++) {
-        ck_assert((mesh[form]->vertices != NULL) == (form % FORMS == DOUBLES));
+        ck_assert((mesh[form]->kept_vertices != NULL) == (form % FORMS == DOUBLES));
         ck_assert(mesh[form]->soup == (form % FORMS >= SOUP));
         ck_assert((mesh[form]->corners != NULL) == (form % FORMS == SOUP_WITH_INDICES));
         rgi_mesh_destroy(mesh[form]);
