@@ -16,6 +16,7 @@ CALLBACKS = """
 extern "Python" int32_t py_filter(void *user, uint64_t index, const rg_hit *candidate);
 extern "Python" void py_log(void *user, const char *message);
 extern "Python" int32_t py_write(void *user, const void *bytes, size_t size);
+extern "Python" void py_released(void *user);
 """
 
 

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
 
 import numpy as np
@@ -136,7 +138,7 @@ class MeshQuality(enum.IntEnum):
 
 
 class Mesh(Shape):
-    """Triangles. The data is copied.
+    """Triangles.
 
     vertices: (V, 3) float32 or float64.
     indices: three vertices of each triangle, (T, 3) or (3 * T,) of any integer dtype; without them, triangle i has
@@ -144,6 +146,10 @@ class Mesh(Shape):
     quality: BEST is what rays go through fastest; FAST is made fastest, for a mesh of which few rays are asked before
     it changes. No answer depends on it.
     workers: threads that make it, the calling one among them. They end before the call does.
+    borrow: what the mesh needs of the arrays later it reads where it lies; else that is copied. It needs vertices
+    that are not all float32, in whichever type, and the indices of triangles that hardly share vertices. The mesh
+    holds on to such arrays, until no object and no one else has it any more: they must not be changed meanwhile, or
+    hits of it may be wrong.
 
     >>> Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).triangle_count
     1
@@ -158,8 +164,9 @@ class Mesh(Shape):
         *,
         quality: MeshQuality = MeshQuality.BEST,
         workers: int = 1,
+        borrow: bool = False,
     ) -> None:
-        views, _kept = _views(vertices)
+        views, arrays = _views(vertices)
         if indices is not None:
             triangles = _arrays.unsigned(indices, "indices", INDEX_TYPES)
             if triangles.ndim == 1 and triangles.size % 3 == 0:
@@ -168,26 +175,62 @@ class Mesh(Shape):
                 raise ValueError(f"indices must have the shape (T, 3) or (3 * T,), not {_arrays.seen(triangles)}")
             lib.py_input3(views, ffi.offsetof("rg_mesh_views", "indices"), *three(triangles))
             views.triangle_count = len(triangles)
-        self._create(lib.rg_shape_create_mesh, views, config=_config(quality, workers))
+            arrays.append(triangles)
+        with _lending(views, arrays, borrow):
+            self._create(lib.rg_shape_create_mesh, views, config=_config(quality, workers))
 
-    def deformed(self, vertices: ArrayLike, *, quality: MeshQuality = MeshQuality.BEST, workers: int = 1) -> Mesh:
+    def deformed(
+        self,
+        vertices: ArrayLike,
+        *,
+        quality: MeshQuality = MeshQuality.BEST,
+        workers: int = 1,
+        borrow: bool = False,
+    ) -> Mesh:
         """A mesh of these triangles with new vertices, made much faster than a new one: (V, 3), V as before.
 
         This one stays as it is: Scene.replace_shape puts the new one in its place. quality, workers: as for Mesh, for
-        the case that the vertices have moved so much against each other that it is made anew.
+        the case that the vertices have moved so much against each other that it is made anew. borrow: as for Mesh.
 
         >>> import numpy as np
         >>> corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
         >>> Mesh(corners, [[0, 1, 2]]).deformed(2 * corners).bounds[1].tolist()
         [2.0, 2.0, 0.0]
         """
-        views, _kept = _views(vertices)
+        views, arrays = _views(vertices)
         mesh = Mesh.__new__(Mesh)
-        mesh._create(lib.rg_shape_create_deformed, self._pointer, views, config=_config(quality, workers))
+        with _lending(views, arrays, borrow):
+            mesh._create(lib.rg_shape_create_deformed, self._pointer, views, config=_config(quality, workers))
         return mesh
 
 
-def _views(vertices: ArrayLike) -> tuple[Any, NDArray[Any]]:
+# Arrays that meshes read, by the number under which the library gives them back.
+_lent: dict[int, list[NDArray[Any]]] = {}
+_numbers = itertools.count(1)
+
+
+@ffi.def_extern()  # type: ignore[untyped-decorator]
+def py_released(user: Any) -> None:
+    del _lent[int(ffi.cast("uintptr_t", user))]
+
+
+@contextlib.contextmanager
+def _lending(views: Any, arrays: list[NDArray[Any]], borrow: bool) -> Iterator[None]:
+    """Lends the arrays to the mesh that is made of the views meanwhile, if it may borrow them."""
+    if not borrow:
+        yield
+        return
+    number = next(_numbers)
+    _lent[number] = arrays
+    views.released, views.user = lib.py_released, ffi.cast("void *", number)
+    try:
+        yield
+    except BaseException:
+        del _lent[number]  # nothing reads them, and nothing will tell so
+        raise
+
+
+def _views(vertices: ArrayLike) -> tuple[Any, list[NDArray[Any]]]:
     """Views of the vertices, to which triangles may be added; and what they lead to, to be kept as long."""
     corners = _arrays.floats(vertices, "vertices")
     if corners.ndim != 2 or corners.shape[1] != 3:
@@ -196,7 +239,7 @@ def _views(vertices: ArrayLike) -> tuple[Any, NDArray[Any]]:
     lib.py_input3(views, ffi.offsetof("rg_mesh_views", "vertices"), *three(corners))
     views.vertex_count = len(corners)
     views.triangle_count = len(corners) // 3
-    return views, corners
+    return views, [corners]
 
 
 def _config(quality: MeshQuality, workers: int) -> Any:

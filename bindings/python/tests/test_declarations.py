@@ -68,8 +68,10 @@ def test_arguments_of_calls() -> None:
     assert fields("rg_source") == {"bytes", "byte_count", "user", "find_shape", "shapes"}
     making = fields("rg_shape_config", "allocator", "parallel_for", "parallel_for_user")
     mesh = set(inspect.signature(raygrid.Mesh).parameters)
-    assert mesh == fields("rg_mesh_views", "vertex_count", "triangle_count") | making
-    assert set(inspect.signature(raygrid.Mesh.deformed).parameters) == {"self", "vertices"} | making
+    # What has been lent is dropped when it is given back.
+    views = fields("rg_mesh_views", "vertex_count", "triangle_count", "released", "user")
+    assert mesh == views | making | {"borrow"}
+    assert set(inspect.signature(raygrid.Mesh.deformed).parameters) == {"self", "vertices", "borrow"} | making
     assert {one.name: one.value for one in raygrid.MeshQuality} == constants("RG_MESH_")
 
 

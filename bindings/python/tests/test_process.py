@@ -44,6 +44,17 @@ def test_exit_with_a_scene_in_a_cycle_and_in_a_callback() -> None:
     """)
 
 
+def test_exit_with_arrays_that_meshes_read() -> None:
+    run("""
+        import numpy as np, raygrid
+        corners = np.random.default_rng(3).normal(size=(300, 3))
+        keep = [raygrid.Mesh(corners, borrow=True) for _ in range(3)]
+        scene = raygrid.Scene(workers=2)
+        scene.insert(keep)
+        scene.trace(corners, -corners)
+    """)
+
+
 def test_exit_while_another_thread_traces() -> None:
     run("""
         import threading, time

@@ -24,7 +24,7 @@ def swarm(count: int) -> NDArray[np.uint64]:
         assert_type(hits.object, NDArray[np.uint64])
         assert_type(hits.invalid, int)
         mesh = raygrid.Mesh(positions, np.arange(3), quality=raygrid.MeshQuality.FAST, workers=2)
-        assert_type(mesh.deformed(positions), raygrid.Mesh)
+        assert_type(mesh.deformed(positions, borrow=True), raygrid.Mesh)
         scene.replace_shape(mesh, mesh.deformed(positions, quality=raygrid.MeshQuality.FAST))
         again = scene.trace((0, 0, 0), positions, out=hits, cull=raygrid.Cull.BACK)
         scene.occluded(positions, (0, 0, 1), out=np.empty(count, np.bool_))
