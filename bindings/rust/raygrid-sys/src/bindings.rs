@@ -384,11 +384,28 @@ pub struct rg_mesh_views {
 3i, 3i+1 and 3i+2, and triangle\_count must be vertex\_count / 3.*/
     pub indices: rg_input3,
     pub triangle_count: u64,
+    /**NULL: the data is read while the mesh is made, what it needs of it later is copied. Else that is borrowed, read
+where the views say for as long as it takes: the vertices, if not all are floats or if they are of extreme size
+(see the cost of rg\_shape\_create\_mesh), and the indices, if triangles share hardly any vertices. No answer
+depends on it.
+
+What all views of the call show must then stay there, and stay as it is, until `released` is called: once, as
+soon as nothing reads it any more. Where nothing is needed later that is in the call that makes the mesh,
+just before it returns; else when the last reference has gone, by the thread that gave it back, as
+rg\_user\_shape.destroy is called. Who has references: the host, objects (those of frames, too, until these are
+brought up to date), and a recording until it ends. If the call fails, `released` is not called and nothing is
+read any more. Should the data change all the same, hits of this mesh may be wrong, but no other memory is
+read.*/
+    pub released: ::core::option::Option<
+        unsafe extern "C" fn(user: *mut ::core::ffi::c_void),
+    >,
+    ///Handed to `released`.
+    pub user: *mut ::core::ffi::c_void,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of rg_mesh_views"][::core::mem::size_of::<rg_mesh_views>() - 104usize];
+    ["Size of rg_mesh_views"][::core::mem::size_of::<rg_mesh_views>() - 120usize];
     ["Alignment of rg_mesh_views"][::core::mem::align_of::<rg_mesh_views>() - 8usize];
     [
         "Offset of field: rg_mesh_views::size",
@@ -405,6 +422,12 @@ const _: () = {
     [
         "Offset of field: rg_mesh_views::triangle_count",
     ][::core::mem::offset_of!(rg_mesh_views, triangle_count) - 96usize];
+    [
+        "Offset of field: rg_mesh_views::released",
+    ][::core::mem::offset_of!(rg_mesh_views, released) - 104usize];
+    [
+        "Offset of field: rg_mesh_views::user",
+    ][::core::mem::offset_of!(rg_mesh_views, user) - 112usize];
 };
 impl Default for rg_mesh_views {
     fn default() -> Self {
@@ -416,15 +439,16 @@ impl Default for rg_mesh_views {
     }
 }
 unsafe extern "C" {
-    /**A triangle mesh. The data is copied. At least one triangle, fewer than 2^31 triangles and 2^32 - 1 vertices.
-Triangles without area are kept, so that primitive numbers hold, and are never hit.
-Hits: primitive = number of the triangle; u and v the barycentric weights of its second and third corner.
-Watertight: a ray at a shared edge or vertex of a closed mesh always hits one of the triangles that share it.
-Errors: RG\_INVALID\_ARGUMENT, RG\_INVALID\_VALUE (a vertex that is not finite or beyond RG\_COORDINATE\_MAX, an index
-without a vertex; the message names its number), RG\_LIMIT\_EXCEEDED, RG\_OUT\_OF\_MEMORY, RG\_OUT\_OF\_THREADS.
+    /**A triangle mesh. The data is copied, unless the views lend it (rg\_mesh\_views.released). At least one triangle,
+fewer than 2^31 triangles and 2^32 - 1 vertices. Triangles without area are kept, so that primitive numbers hold,
+and are never hit. Hits: primitive = number of the triangle; u and v the barycentric weights of its second and
+third corner. Watertight: a ray at a shared edge or vertex of a closed mesh always hits one of the triangles that
+share it. Errors: RG\_INVALID\_ARGUMENT, RG\_INVALID\_VALUE (a vertex that is not finite or beyond RG\_COORDINATE\_MAX,
+an index without a vertex; the message names its number), RG\_LIMIT\_EXCEEDED, RG\_OUT\_OF\_MEMORY, RG\_OUT\_OF\_THREADS.
 Cost: O(n log n) for n triangles; while it is made up to 350 bytes a triangle. What it holds of a triangle: some 30
 bytes where triangles share vertices, 50 where they do not, 62 where these have indices; and 24 bytes a vertex if
-not all are floats, given in whichever type, or if the largest coordinate is beyond 2^40 or below 2^-40.*/
+not all are floats, given in whichever type, or if the largest coordinate is beyond 2^40 or below 2^-40. The 24
+bytes, and 12 of the 62, are what it borrows if it may.*/
     pub fn rg_shape_create_mesh(
         config: *const rg_shape_config,
         views: *const rg_mesh_views,
@@ -433,8 +457,9 @@ not all are floats, given in whichever type, or if the largest coordinate is bey
 }
 unsafe extern "C" {
     /**A mesh of the triangles of another one with new vertices, for meshes that change their form: made much faster than
-by rg\_shape\_create\_mesh. Of `views` only the vertices are read, as many as `mesh` has: the triangles are those of
-`mesh`, which stays as it is and may be released afterwards; rg\_scene\_replace\_shape puts the new one in its place.
+by rg\_shape\_create\_mesh. Of `views` only the vertices are read, as many as `mesh` has, and copied or borrowed: the
+triangles are those of `mesh`, which stays as it is and may be released afterwards with all that it has borrowed;
+rg\_scene\_replace\_shape puts the new one in its place.
 What finds the triangles is taken over and fitted, unless triangles have moved so much against each other, in this
 and earlier such steps, that rays would cost half as much again: then it is made anew, as config says. No answer
 depends on which of the two. Errors: as rg\_shape\_create\_mesh; RG\_INVALID\_ARGUMENT: `mesh` is no mesh;

@@ -36,7 +36,7 @@ pub use grid::{GridConfig, GridReport};
 pub use hit::{Hit, NO_PRIMITIVE};
 pub use host::{Builder, ParallelFor};
 pub use id::{GridId, ObjectId};
-pub use mesh::MeshBuilder;
+pub use mesh::{MeshBuilder, MeshData};
 pub use pose::Pose;
 pub use query::{Query, Traced};
 pub use ray::Ray;

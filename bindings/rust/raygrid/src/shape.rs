@@ -10,7 +10,7 @@ use raygrid_sys as sys;
 
 use crate::error::check;
 use crate::views::{Indices, Vectors};
-use crate::{MeshBuilder, Result, ShapeReport, UserShape, sized, user_shape};
+use crate::{MeshBuilder, MeshData, Result, ShapeReport, UserShape, sized, user_shape};
 
 /// A shape: sphere, box, capsule, triangle mesh, or one of your own.
 ///
@@ -70,6 +70,22 @@ impl Shape {
     /// ```
     pub fn mesh<'a>(vertices: impl Into<Vectors<'a>>, triangles: impl Into<Indices<'a>>) -> Result<Self> {
         Self::mesh_builder().mesh(vertices, triangles)
+    }
+
+    /// A mesh that reads what it needs of the data where it lies, and drops it when it needs it no more; answers are those
+    /// of a mesh that has copied it.
+    ///
+    /// ```
+    /// use raygrid::Shape;
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]];
+    /// let faces = vec![[0_u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    /// let copied = Shape::mesh(&corners, &faces)?.stats()?.bytes;
+    /// assert_eq!(copied - Shape::mesh_of((corners, faces))?.stats()?.bytes, 4 * 24);
+    /// # Ok::<(), raygrid::Error>(())
+    /// ```
+    pub fn mesh_of(data: impl MeshData) -> Result<Self> {
+        Self::mesh_builder().mesh_of(data)
     }
 
     /// A mesh of triangles, each the next three vertices. All is copied.
