@@ -14,9 +14,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MANY = 200, OBJECTS = 1024, PROBES = 24, SHAPES = 7, INSERTED = 5, SIDE = 12 };
+enum { MANY = 200, OBJECTS = 1024, PROBES = 24, SHAPES = 9, INSERTED = 5, SIDE = 12 };
 
-enum { BALL, CUBE, PILL, SOLID, OWN, BENT, HASTY };
+enum { BALL, CUBE, PILL, SOLID, OWN, BENT, HASTY, LENT, LENT_AGAIN };
 
 typedef struct scenario {
     test_allocator memory;
@@ -27,7 +27,7 @@ typedef struct scenario {
     rg_object objects[OBJECTS];
     uint32_t count; /* of objects */
     uint64_t turns; /* so far: what a step does follows from it alone */
-    int own_destroyed;
+    int own_destroyed, given_back;
 } scenario;
 
 typedef struct probe {
@@ -96,6 +96,40 @@ static rg_result make_mesh(const rg_shape_config *config, const rg_shape *mesh, 
     return mesh ? rg_shape_create_deformed(config, mesh, &views, shape) : rg_shape_create_mesh(config, &views, shape);
 }
 
+/* The data of a mesh that is read where it lies. */
+typedef struct loan {
+    double vertices[12][3];
+    uint32_t indices[4][3];
+    scenario *s;
+} loan;
+
+static void give_back(void *user) {
+    ((loan *)user)->s->given_back++;
+    free(user);
+}
+
+/* Four triangles that share nothing, by indices. `mesh`: the one that is to be as large as that; or NULL. */
+static rg_result borrow(scenario *s, const rg_shape_config *config, const rg_shape *mesh, double size,
+                        rg_shape **shape) {
+    int given_back = s->given_back;
+    loan *l = malloc(sizeof *l);
+    if (!l) fail("the test", 0, "out of memory");
+    l->s = s;
+    for (int i = 0; i < 12; i++) {
+        for (int a = 0; a < 3; a++) l->vertices[i][a] = size * cos(5 * i + a);
+        l->indices[i / 3][i % 3] = (uint32_t)(11 - i);
+    }
+    rg_mesh_views views = {
+        .size = sizeof views, .vertex_count = 12, .triangle_count = 4, .released = give_back, .user = l};
+    views.vertices = rg_input3_packed(l->vertices, sizeof *l->vertices, RG_F64);
+    views.indices = rg_input3_packed(l->indices, sizeof *l->indices, RG_U32);
+    rg_result result =
+        mesh ? rg_shape_create_deformed(config, mesh, &views, shape) : rg_shape_create_mesh(config, &views, shape);
+    if (s->given_back != given_back) fail("borrow", 0, "the data is given back already");
+    if (result != RG_OK) free(l);
+    return result;
+}
+
 static rg_result make_shape(scenario *s, uint32_t which) {
     static const double LO[3] = {-1, -1, -1}, HI[3] = {1, 1, 1};
     rg_shape_config config = {.size = sizeof config, .allocator = test_allocator_hooks(&s->memory)};
@@ -116,6 +150,10 @@ static rg_result make_shape(scenario *s, uint32_t which) {
     case HASTY:
         config.quality = RG_MESH_FAST;
         return make_mesh(&config, NULL, 0.2f, &s->shapes[HASTY]);
+    case LENT:
+        return borrow(s, &config, NULL, 1, &s->shapes[LENT]);
+    case LENT_AGAIN:
+        return borrow(s, &config, s->shapes[LENT], 1.1, &s->shapes[LENT_AGAIN]);
     default:
         return rg_shape_create_user(&config, &own, &s->shapes[OWN]);
     }
@@ -274,6 +312,8 @@ static const step STEPS[] = {
     {"user shape", make_shape, OWN, 1, false},
     {"new vertices", make_shape, BENT, 1, false},
     {"mesh in a hurry", make_shape, HASTY, 1, false},
+    {"mesh that borrows", make_shape, LENT, 1, false},
+    {"new vertices that it borrows", make_shape, LENT_AGAIN, 1, false},
     {"insert", insert_one, 5, 40, false},
     {"grid", make_grid, 0, 1, false},
     {"grid", make_grid, 1, 1, false},
@@ -283,6 +323,8 @@ static const step STEPS[] = {
     {"move_to", move_to, 1000, 10, false},
     {"replace a mesh", replace_shape, 10 * SOLID + BENT, 1, false},
     {"replace it again", replace_shape, 10 * BENT + HASTY, 1, false},
+    {"replace it by one that borrows", replace_shape, 10 * HASTY + LENT, 1, false},
+    {"replace one that borrows", replace_shape, 10 * LENT + LENT_AGAIN, 1, false},
     {"replace balls", replace_shape, 10 * BALL + CUBE, 1, false},
     {"set_mask", set_mask, 5, 1, false},
     {"move many", move_many, 500, 1, false},
@@ -297,7 +339,7 @@ static const step STEPS[] = {
     {"crowd", crowd_one, 0, 60, true},
     {"out of all cells", move_out, 0, 12, false},
     {"replace also what has no cell", replace_shape, 10 * CUBE + BALL, 1, false},
-    {"replace also what has no cell", replace_shape, 10 * HASTY + PILL, 1, false},
+    {"replace also what has no cell", replace_shape, 10 * LENT_AGAIN + PILL, 1, false},
     {"and back", move_to, 20, 12, false},
     {"insert far away", insert_one, 100000, 10, false},
     {"move many", move_many, 50, 1, false},
@@ -339,8 +381,11 @@ static void look(scenario *s, probe *p) {
 static void finish(scenario *s) {
     if (rg_scene_destroy(&s->scene) != RG_OK) fail("destroy", 0, rg_error_message());
     bool own = s->shapes[OWN] != NULL;
+    int lent = (s->shapes[LENT] != NULL) + (s->shapes[LENT_AGAIN] != NULL);
+    if (s->given_back) fail("destroy", 0, "data is given back that a shape may still read");
     for (int i = 0; i < SHAPES; i++) rg_shape_release(&s->shapes[i]);
     if (s->own_destroyed != own) fail("release", 0, "the user shape's destroy was not called once");
+    if (s->given_back != lent) fail("release", 0, "what was lent was not given back once");
     if (s->memory.live_blocks != 0 || s->memory.live_bytes != 0) fail("destroy", 0, "memory is left");
 }
 
