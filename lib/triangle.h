@@ -34,7 +34,13 @@ typedef struct rgi_triangle_meeting {
 /** The corners of a triangle of a leaf, as they were given. */
 static inline void rgi_triangle_corners(const rgi_mesh *mesh, const void *leaf, uint32_t triangle, double v[3][3]) {
     if (!mesh->exact) {
-        for (uint32_t c = 0; c < 3; c++) rgi_load3(&mesh->vertices, rgi_mesh_vertex(mesh, leaf, triangle, c), v[c]);
+        for (uint32_t c = 0; c < 3; c++) {
+            uint32_t vertex = rgi_mesh_vertex(mesh, leaf, triangle, c);
+            if (mesh->kept_vertices) /* no type and no stride to ask for: some 4 % of coherent rays in soups */
+                rgi_copy(mesh->kept_vertices[vertex], v[c]);
+            else
+                rgi_load3(&mesh->vertices, vertex, v[c]);
+        }
     } else if (mesh->soup) {
         const rgi_soup_leaf *l = leaf;
         for (int c = 0; c < 3; c++)
