@@ -81,29 +81,88 @@ static bool text_is(const json_t *object, const char *key, const char *wanted) {
     return text && strcmp(text, wanted) == 0;
 }
 
-static rg_result call_mesh(context *c, const json_t *step) {
+/* Three numbers a record, of `size` bytes each: one after another, or each in an array of its own. */
+static rg_input3 view_of(const void *packed, size_t count, size_t size, rg_type type, void *apart) {
+    unsigned char *column = apart;
+    if (!apart) return rg_input3_packed(packed, (ptrdiff_t)(3 * size), type);
+    for (size_t i = 0; i < 3 * count; i++)
+        memcpy(column + (i % 3 * count + i / 3) * size, (const unsigned char *)packed + i * size, size);
+    const rg_input3 view = {column, column + count * size, column + 2 * count * size, (ptrdiff_t)size, type};
+    return view;
+}
+
+/* The memory of a mesh as the host has it. */
+typedef struct mesh_data {
+    rg_mesh_views views;
+    void *vertices, *vertices_apart, *indices, *indices_apart;
+} mesh_data;
+
+static mesh_data read_mesh(context *c, const json_t *step) {
     const json_t *vertices = read_array(c, step, "vertices"), *indices = json_object_get(step, "indices");
-    bool as_float = text_is(step, "vertex_type", "f32");
+    bool as_float = text_is(step, "vertex_type", "f32"), apart = json_is_true(json_object_get(step, "apart"));
     size_t of_vertex = as_float ? sizeof(float) : sizeof(double);
     size_t of_index = text_is(step, "index_type", "u16") ? 2 : text_is(step, "index_type", "u64") ? 8 : 4;
     rg_type index_type = of_index == 2 ? RG_U16 : of_index == 8 ? RG_U64 : RG_U32;
-    rg_mesh_views views;
-    memset(&views, 0, sizeof views);
-    views.size = sizeof views;
-    void *vertex_data = vertex_block(c, vertices, as_float);
-    unsigned char *index_data = indices ? index_block(c, indices, of_index) : NULL;
-    rg_result result = MALFORMED;
+    mesh_data m;
+    memset(&m, 0, sizeof m);
+    m.views.size = sizeof m.views;
+    m.views.vertex_count = json_array_size(vertices);
+    m.views.triangle_count = indices ? json_array_size(indices) : m.views.vertex_count / 3;
+    m.vertices = vertex_block(c, vertices, as_float);
+    if (indices) m.indices = index_block(c, indices, of_index);
+    if (apart) m.vertices_apart = block(c, 3 * m.views.vertex_count, of_vertex);
+    if (apart && indices) m.indices_apart = block(c, 3 * m.views.triangle_count, of_index);
+    if (c->broken) return m;
+    m.views.vertices =
+        view_of(m.vertices, m.views.vertex_count, of_vertex, as_float ? RG_F32 : RG_F64, m.vertices_apart);
+    if (indices) m.views.indices = view_of(m.indices, m.views.triangle_count, of_index, index_type, m.indices_apart);
+    return m;
+}
+
+static void free_mesh(mesh_data *m) {
+    free(m->vertices);
+    free(m->vertices_apart);
+    free(m->indices);
+    free(m->indices_apart);
+}
+
+static rg_shape_config read_making(context *c, const json_t *step) {
+    rg_shape_config config;
+    const json_t *quality = json_object_get(step, "quality");
+    rg_shape_config_default(&config, sizeof config);
+    if (text_is(step, "quality", "fast"))
+        config.quality = RG_MESH_FAST;
+    else if (json_is_integer(quality))
+        config.quality = (rg_mesh_quality)json_integer_value(quality);
+    else if (quality && !text_is(step, "quality", "best"))
+        malformed(c, "unknown quality");
+    return config;
+}
+
+static rg_result call_mesh(context *c, const json_t *step) {
+    mesh_data m = read_mesh(c, step);
+    const rg_shape_config config = read_making(c, step);
     rg_shape *shape = NULL;
-    if (!c->broken) {
-        views.vertices = rg_input3_packed(vertex_data, (ptrdiff_t)(3 * of_vertex), as_float ? RG_F32 : RG_F64);
-        views.vertex_count = json_array_size(vertices);
-        views.triangle_count = indices ? json_array_size(indices) : views.vertex_count / 3;
-        if (indices) views.indices = rg_input3_packed(index_data, (ptrdiff_t)(3 * of_index), index_type);
-        result = keep_shape(c, step, rg_shape_create_mesh(NULL, &views, &shape), &shape);
-    }
-    free(vertex_data);
-    free(index_data);
+    rg_result result = MALFORMED;
+    if (!c->broken) result = keep_shape(c, step, rg_shape_create_mesh(&config, &m.views, &shape), &shape);
+    free_mesh(&m);
     return result;
+}
+
+static rg_result call_deform(context *c, const json_t *step) {
+    const rg_shape *from = read_shape(c, read_text(c, step, "from"));
+    const rg_shape_config config = read_making(c, step);
+    mesh_data m = read_mesh(c, step);
+    rg_shape *shape = NULL;
+    rg_result result = MALFORMED;
+    if (!c->broken) result = keep_shape(c, step, rg_shape_create_deformed(&config, from, &m.views, &shape), &shape);
+    free_mesh(&m);
+    return result;
+}
+
+static rg_result call_replace_shape(context *c, const json_t *step) {
+    rg_shape *from = read_shape(c, read_text(c, step, "from")), *to = read_shape(c, read_text(c, step, "to"));
+    return c->broken ? MALFORMED : rg_scene_replace_shape(c->scene, from, to);
 }
 
 static rg_result call_release(context *c, const json_t *step) {
@@ -336,7 +395,9 @@ static const struct {
     {"sphere", "do shape radius", call_sphere},
     {"box", "do shape lo hi", call_box},
     {"capsule", "do shape a b radius", call_capsule},
-    {"mesh", "do shape vertices vertex_type indices index_type", call_mesh},
+    {"mesh", "do shape vertices vertex_type indices index_type apart quality", call_mesh},
+    {"deform", "do shape from vertices vertex_type apart quality", call_deform},
+    {"replace_shape", "do from to", call_replace_shape},
     {"release", "do shape", call_release},
     {"insert", "do object shape position linear mask grid", call_insert},
     {"insert_many", "do objects shape shapes positions linears masks grid", call_insert_many},

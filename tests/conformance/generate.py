@@ -16,6 +16,7 @@ import cases_capsule
 import cases_grid
 import cases_grids
 import cases_loose
+import cases_mesh
 import cases_paper
 import cases_pose
 import cases_query
@@ -29,6 +30,7 @@ import emit
 HERE = Path(__file__).resolve().parent
 TOPICS = {
     "sphere": cases_sphere, "box": cases_box, "capsule": cases_capsule, "triangle": cases_triangle,
+    "mesh": cases_mesh,
     "shapes": cases_shapes, "pose": cases_pose,
     "query": cases_query, "scene": cases_scene, "grid": cases_grid, "grids": cases_grids, "loose": cases_loose,
     "paper": cases_paper,

@@ -25,7 +25,7 @@ MORE = ["uniform-tiled", "hierarchical-tiled", "uniform-rebuilt", "hierarchical-
 OF_CELLS = {"levels", "levels_used", "resolution", "physical_lo", "physical_hi", "physical_contains", "entries",
             "unbounded", "tiles", "rebuilds"}
 
-SHAPES = ("sphere", "box", "capsule", "mesh", "release")
+SHAPES = ("sphere", "box", "capsule", "mesh", "deform", "release")
 
 NORMAL_WITHIN = Fraction(1, 2 ** 20)  # what a float normal is allowed when nothing else is said
 
@@ -138,12 +138,20 @@ class Case:
         self.shapes[name] = Capsule(a, b, radius)
         self.step("capsule", shape=name, a=emit.numbers(a), b=emit.numbers(b), radius=emit.number(radius))
 
-    def mesh(self, name, vertices, triangles=None, vertex_type=None, index_type=None):
+    def mesh(self, name, vertices, triangles=None, vertex_type=None, index_type=None, apart=None, quality=None):
         given = triangles or [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(len(vertices) // 3)]
         self.shapes[name] = Mesh(vertices, given)
         self.step("mesh", shape=name, vertices=[emit.numbers(v) for v in vertices],
                   indices=[list(t) for t in triangles] if triangles else None,
-                  vertex_type=vertex_type, index_type=index_type)
+                  vertex_type=vertex_type, index_type=index_type, apart=apart, quality=quality)
+
+    def deform(self, name, old, vertices, vertex_type=None, apart=None, quality=None):
+        """A mesh of the triangles of another one with new vertices."""
+        triangles = self.shapes[old].triangles
+        assert max(map(max, triangles)) < len(vertices)
+        self.shapes[name] = Mesh(vertices, triangles)
+        self.step("deform", shape=name, **{"from": old}, vertices=[emit.numbers(v) for v in vertices],
+                  vertex_type=vertex_type, apart=apart, quality=quality)
 
     def release(self, name):
         self.step("release", shape=name)
@@ -209,6 +217,14 @@ class Case:
 
     def reposition(self, name, position):
         self.repose(name, Pose(position, [rounded(x) for x in self.objects[name].pose.linear]))
+
+    def replace_shape(self, old, new):
+        """All objects of one shape get another one; their poses stay."""
+        for name, placed in self.objects.items():
+            if placed.shape is self.shapes[old]:
+                placed.shape = self.shapes[new]
+                self.reposition(name, [rounded(x) for x in placed.pose.position])
+        self.step("replace_shape", **{"from": old, "to": new})
 
     def set_mask(self, name, mask):
         self.objects[name].mask = mask

@@ -41,13 +41,36 @@ def capsule(play: Play, step: Step) -> None:
     play.shapes[step["shape"]] = raygrid.Capsule(*ends, number(step["radius"]))
 
 
+def laid_out(step: Step, records: np.ndarray) -> np.ndarray:
+    """Where they lie in memory: one after another, or each component in an array of its own."""
+    return np.asfortranarray(records) if step.get("apart") else records
+
+
+def mesh_vertices(step: Step) -> np.ndarray:
+    return laid_out(step, vectors(step["vertices"], np.float32 if step.get("vertex_type") == "f32" else np.float64))
+
+
+def quality(step: Step) -> Any:
+    given = step.get("quality", "best")
+    return raygrid.MeshQuality[given.upper()] if isinstance(given, str) else given
+
+
 def mesh(play: Play, step: Step) -> None:
-    vertices = vectors(step["vertices"], np.float32 if step.get("vertex_type") == "f32" else np.float64)
     indices = None
     if "indices" in step:
         dtype = {"u16": np.uint16, "u32": np.uint32, "u64": np.uint64}[step.get("index_type", "u32")]
-        indices = np.array(step["indices"], dtype).reshape(-1, 3)
-    play.shapes[step["shape"]] = raygrid.Mesh(vertices, indices)
+        indices = laid_out(step, np.array(step["indices"], dtype).reshape(-1, 3))
+    play.shapes[step["shape"]] = raygrid.Mesh(mesh_vertices(step), indices, quality=quality(step))
+
+
+def deform(play: Play, step: Step) -> None:
+    # By the class: other shapes have no such method, and the library's refusal is what is asked for.
+    old: Any = shape_of(play, step["from"])
+    play.shapes[step["shape"]] = raygrid.Mesh.deformed(old, mesh_vertices(step), quality=quality(step))
+
+
+def replace_shape(play: Play, step: Step) -> None:
+    play.scene.replace_shape(shape_of(play, step["from"]), shape_of(play, step["to"]))
 
 
 def release(play: Play, step: Step) -> None:
@@ -160,7 +183,9 @@ CALLS = {
     "sphere": (sphere, "shape radius"),
     "box": (box, "shape lo hi"),
     "capsule": (capsule, "shape a b radius"),
-    "mesh": (mesh, "shape vertices vertex_type indices index_type"),
+    "mesh": (mesh, "shape vertices vertex_type indices index_type apart quality"),
+    "deform": (deform, "shape from vertices vertex_type apart quality"),
+    "replace_shape": (replace_shape, "from to"),
     "release": (release, "shape"),
     "insert": (insert, "object shape position linear mask grid"),
     "insert_many": (insert_many, "objects shape shapes positions linears masks grid"),

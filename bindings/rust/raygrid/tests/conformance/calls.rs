@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //! The steps of a script that are calls.
 
-use raygrid::views::{Indices, PoseViews, Poses, Vectors};
-use raygrid::{Insert, Pose, Shape, Shapes};
+use raygrid::views::{Element, Indices, Kind, PoseViews, Poses, Triples, Vectors};
+use raygrid::{Insert, MeshBuilder, MeshQuality, Pose, Shape, Shapes};
 use serde_json::Value;
 
 use crate::script::{
@@ -18,7 +18,9 @@ pub fn call(play: &mut Play, step: &Step) -> Outcome {
         "sphere" => "shape radius",
         "box" => "shape lo hi",
         "capsule" => "shape a b radius",
-        "mesh" => "shape vertices vertex_type indices index_type",
+        "mesh" => "shape vertices vertex_type indices index_type apart quality",
+        "deform" => "shape from vertices vertex_type apart quality",
+        "replace_shape" => "from to",
         "release" => "shape",
         "insert" => "object shape position linear mask grid",
         "insert_many" => "objects shape shapes positions linears masks grid",
@@ -36,7 +38,7 @@ pub fn call(play: &mut Play, step: &Step) -> Outcome {
     };
     known(step, &format!("do {fields}"))?;
     match name {
-        "sphere" | "box" | "capsule" | "mesh" | "release" => shapes(play, step, name),
+        "sphere" | "box" | "capsule" | "mesh" | "deform" | "release" => shapes(play, step, name),
         "insert" | "insert_many" | "insert_line" => insert(play, step, name),
         "create_grid" | "configure_grid" | "rebuild_grid" | "destroy_grid" | "grid_stats" => grids(play, step, name),
         "trace" => Batch::new(step)?.trace_once(play).map(drop),
@@ -53,6 +55,7 @@ fn shapes(play: &mut Play, step: &Step, name: &str) -> Outcome {
             Shape::capsule(a, b, number(field(step, "radius")?)?)?
         }
         "mesh" => mesh(step)?,
+        "deform" => deform(play, step)?,
         _ => {
             play.shape(field(step, "shape")?)?;
             play.shapes.remove(text(field(step, "shape")?)?);
@@ -63,29 +66,78 @@ fn shapes(play: &mut Play, step: &Step, name: &str) -> Outcome {
     Ok(())
 }
 
-fn mesh(step: &Step) -> Outcome<Shape> {
-    let doubles = vectors(field(step, "vertices")?)?;
-    let floats: Vec<[f32; 3]> = doubles.iter().map(|vertex| vertex.map(|x| x as f32)).collect();
-    let vertices: Vectors = match step.get("vertex_type").map(text).transpose()? {
-        Some("f32") => (&floats).into(),
-        None | Some("f64") => (&doubles).into(),
-        Some(other) => malformed!("unknown vertex_type {other}"),
+/// Three numbers a record: one after another, or each in an array of its own.
+struct Laid<T> {
+    packed: Vec<[T; 3]>,
+    columns: [Vec<T>; 3],
+}
+
+impl<T: Copy> Laid<T> {
+    fn new(packed: Vec<[T; 3]>) -> Self {
+        let columns = [0, 1, 2].map(|i| packed.iter().map(|record| record[i]).collect());
+        Self { packed, columns }
+    }
+
+    fn view<'a, K: Kind>(&'a self, step: &Step) -> Triples<'a, K>
+    where
+        T: Element<K>,
+        &'a Vec<[T; 3]>: Into<Triples<'a, K>>,
+    {
+        let [x, y, z] = &self.columns;
+        let apart = step.get("apart").and_then(Value::as_bool).unwrap_or(false);
+        if apart { Triples::components(x, y, z) } else { (&self.packed).into() }
+    }
+}
+
+fn making(step: &Step) -> Outcome<MeshBuilder> {
+    let quality = match step.get("quality") {
+        None => MeshQuality::Best,
+        Some(Value::String(name)) if name == "best" => MeshQuality::Best,
+        Some(Value::String(name)) if name == "fast" => MeshQuality::Fast,
+        Some(value) => match value.as_i64().map(i32::try_from) {
+            Some(Ok(number)) => MeshQuality::try_from(number)?,
+            _ => malformed!("{value} is no quality"),
+        },
     };
-    let Some(given) = step.get("indices") else { return Ok(Shape::triangles(vertices)?) };
+    Ok(Shape::mesh_builder().quality(quality))
+}
+
+/// Calls `make` with the vertices of a step, as its types say.
+fn with_vertices(step: &Step, make: impl FnOnce(Vectors) -> Outcome<Shape>) -> Outcome<Shape> {
+    let doubles = vectors(field(step, "vertices")?)?;
+    let floats = Laid::new(doubles.iter().map(|vertex| vertex.map(|x| x as f32)).collect());
+    match step.get("vertex_type").map(text).transpose()? {
+        Some("f32") => make(floats.view(step)),
+        None | Some("f64") => make(Laid::new(doubles).view(step)),
+        Some(other) => malformed!("unknown vertex_type {other}"),
+    }
+}
+
+fn mesh(step: &Step) -> Outcome<Shape> {
+    let making = making(step)?;
+    let Some(given) = step.get("indices") else {
+        return with_vertices(step, |vertices| Ok(making.triangles(vertices)?));
+    };
     let mut wide = Vec::new();
     for triangle in list(given)? {
         let corners = list(triangle)?.iter().map(|index| whole(index, u64::MAX)).collect::<Outcome<Vec<u64>>>()?;
         wide.push(<[u64; 3]>::try_from(corners).or_else(|_| malformed!("{triangle} are not three corners"))?);
     }
-    let middle: Vec<[u32; 3]> = wide.iter().map(|corners| corners.map(|index| index as u32)).collect();
-    let narrow: Vec<[u16; 3]> = wide.iter().map(|corners| corners.map(|index| index as u16)).collect();
+    let middle = Laid::new(wide.iter().map(|corners| corners.map(|index| index as u32)).collect());
+    let narrow = Laid::new(wide.iter().map(|corners| corners.map(|index| index as u16)).collect());
+    let wide = Laid::new(wide);
     let indices: Indices = match step.get("index_type").map(text).transpose()? {
-        Some("u16") => (&narrow).into(),
-        None | Some("u32") => (&middle).into(),
-        Some("u64") => (&wide).into(),
+        Some("u16") => narrow.view(step),
+        None | Some("u32") => middle.view(step),
+        Some("u64") => wide.view(step),
         Some(other) => malformed!("unknown index_type {other}"),
     };
-    Ok(Shape::mesh(vertices, indices)?)
+    with_vertices(step, |vertices| Ok(making.mesh(vertices, indices)?))
+}
+
+fn deform(play: &Play, step: &Step) -> Outcome<Shape> {
+    let (making, old) = (making(step)?, play.shape(field(step, "from")?)?);
+    with_vertices(step, |vertices| Ok(making.deformed(old, vertices)?))
 }
 
 /// Linear parts as the views of their columns: each component of each in an array of its own.
@@ -172,6 +224,9 @@ fn change(play: &mut Play, step: &Step, name: &str) -> Outcome {
             let pose = Pose::at(numbers(field(step, "position")?)?);
             let linear = step.get("linear").map(matrix).transpose()?;
             play.scene.move_pose(one()?, linear.map_or(pose, |linear| pose.linear(linear)))?;
+        }
+        "replace_shape" => {
+            play.scene.replace_shape(play.shape(field(step, "from")?)?, play.shape(field(step, "to")?)?)?
         }
         "move_to" => play.scene.move_to(one()?, numbers(field(step, "position")?)?)?,
         "move_many" => {

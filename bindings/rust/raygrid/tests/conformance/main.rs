@@ -121,6 +121,7 @@ files! {
     grid: "grid.json",
     grids: "grids.json",
     loose: "loose.json",
+    mesh: "mesh.json",
     paper: "paper.json",
     pose: "pose.json",
     query: "query.json",
