@@ -198,7 +198,7 @@ struct rgi_kernels {
                            struct rgi_mesh_packet *packet);
     /** Takes them through, if they go the same way; else false: nothing was done. */
     bool (*mesh_packet)(struct rgi_mesh_packet *packet);
-    /** Takes them through, each its own way: those of the first row. */
+    /** Takes them through, each its own way: the active ones of all rows. */
     void (*mesh_apart)(struct rgi_mesh_lanes *lanes);
     /** Finds the plane between bins that parts the items of a mesh at the least cost; `fill`: items of a leaf. */
     void (*find_split)(const struct rgi_wrap *items, uint32_t count, const struct rgi_wrap *centres,

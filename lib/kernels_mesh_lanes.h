@@ -131,6 +131,8 @@ static void mesh_side_by_side(rgi_mesh_lanes *l) {
 static void mesh_apart(rgi_mesh_lanes *l) {
     lane_list list;
     list.count = 0;
-    begin_side_by_side(l, 0, &list);
+    for (uint32_t r = 0; r < RGI_SIDE_BY_SIDE / RGI_PACKET; r++) {
+        if (l->rows[r].inside.rays.active) begin_side_by_side(l, r, &list);
+    }
     go_side_by_side(l, &list);
 }

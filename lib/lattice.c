@@ -440,6 +440,25 @@ float rgi_lattice_spacing(const rgi_lattice *lattice) {
     return inverse_cube_root((float)(lattice->count + 1));
 }
 
+/* Adds the slots below to those that are there; returns how many there are then. */
+static uint32_t gather_slots(const rgi_lattice *lattice, rgi_ref ref, uint32_t *slots, uint32_t count) {
+    if (rgi_is_node(ref)) {
+        const rgi_node *n = rgi_arena_at(&lattice->arena, ref);
+        for (int i = 0; i < RGI_OCTANTS; i++) count = gather_slots(lattice, n->child[i], slots, count);
+        ref = n->own;
+    }
+    while (ref) {
+        const rgi_block *block = rgi_block_at(lattice, ref);
+        for (uint32_t i = 0; i < block->count; i++) slots[count++] = block->slots[i];
+        ref = block->next;
+    }
+    return count;
+}
+
+uint32_t rgi_lattice_few(const rgi_lattice *lattice, uint32_t *slots, uint32_t most) {
+    return lattice->count <= most ? gather_slots(lattice, lattice->root, slots, 0) : 0;
+}
+
 void rgi_lattice_box(const rgi_lattice *lattice, double lo[3], double hi[3]) {
     for (int a = 0; a < 3; a++) {
         lo[a] = lattice->origin[a] + (double)lattice->lo[a] * lattice->unit;

@@ -205,6 +205,9 @@ rg_result rgi_lattice_reserve(rgi_lattice *lattice, uint64_t unbounded);
 /** The middle of what has a cell, but for the spacing. */
 rgi_middle rgi_lattice_middle(const rgi_lattice *lattice);
 
+/** The slots of what has a cell, if there are at most so many: how many; else 0. */
+uint32_t rgi_lattice_few(const rgi_lattice *lattice, uint32_t *slots, uint32_t most);
+
 /** See rgi_middle: only rays that go together need it. */
 float rgi_lattice_spacing(const rgi_lattice *lattice);
 

@@ -26,7 +26,7 @@
 #define rgi_mesh_destroy(mesh) ((void)0)
 #define rgi_mesh_intersect(mesh, ray, candidate) false
 #define rgi_support_reach(support) INFINITY
-#define rgi_support_bounds(support, matrix, lo, hi) INFINITY
+#define rgi_support_bounds(support, matrix, lo, hi) ((void)(matrix), (void)(lo), (void)(hi), INFINITY)
 #endif
 
 /* --------------------------------------------------------------------------------------------- intersection */

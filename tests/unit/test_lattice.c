@@ -379,6 +379,26 @@ START_TEST(cells_and_none) {
 }
 END_TEST
 
+/* Balls and boxes, in blocks of their own, here and far off. */
+START_TEST(a_few_are_listed) {
+    enum { FEW = 5 };
+    uint32_t slots[FEW], seen = 0;
+    crowd_begin();
+    ck_assert_uint_eq(rgi_lattice_few(&store.lattice, slots, FEW), 0);
+    for (uint32_t i = 0; i <= FEW; i++) {
+        const rgi_bound bound = i % 2 ? ball_at(i, -1.0 * i, 100.0 * (i / 3), 0.1) : box_at(i, 2, 3, 0.1 + i);
+        crowd_insert(i, &bound);
+        uint32_t count = rgi_lattice_few(&store.lattice, slots, FEW);
+        ck_assert_uint_eq(count, i < FEW ? i + 1 : 0);
+        seen = 0;
+        for (uint32_t k = 0; k < count; k++) seen |= 1u << slots[k];
+        ck_assert_uint_eq(seen, (1u << count) - 1);
+    }
+    take_all_out(FEW + 1);
+    crowd_end();
+}
+END_TEST
+
 /* The first object makes the frame; when all have gone the next first one makes it anew. */
 START_TEST(each_first_object_makes_the_frame) {
     crowd_begin();
@@ -485,6 +505,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, many_in_a_small_place);
     tcase_add_test(tests, the_root_grows);
     tcase_add_test(tests, cells_and_none);
+    tcase_add_test(tests, a_few_are_listed);
     tcase_add_test(tests, each_first_object_makes_the_frame);
     tcase_add_test(tests, boxes_follow_a_drift);
     tcase_add_test(tests, no_memory);
