@@ -406,10 +406,22 @@ static void fill_rays(rg_ray *rays, const double at[3], bool inside) {
     }
 }
 
-static void demand_same_hits(rg_scene *scene, const rg_ray *rays, rg_cull cull, uint32_t *found) {
+/* Every third triangle is as glass. */
+static int32_t is_opaque(void *user, uint64_t ray, const rg_hit *hit) {
+    (void)user;
+    (void)ray;
+    return hit->primitive % 3 != 0;
+}
+
+/* The ways that a batch may go. */
+typedef enum way { IN_PACKETS, SIDE_BY_SIDE, SIDE_BY_SIDE_WITH_FILTER, WAYS } way;
+
+static void demand_same_hits(rg_scene *scene, const rg_ray *rays, rg_cull cull, way way, uint32_t *found) {
     static rg_hit together[RAYS], alone[RAYS];
     static uint8_t any[RAYS], any_alone[RAYS];
-    rg_trace_config config = {.size = sizeof config, .cull = cull, .coherence = RG_COHERENCE_HIGH};
+    rg_trace_config config = {.size = sizeof config, .cull = cull, .coherence = RG_COHERENCE_LOW};
+    if (way == IN_PACKETS) config.coherence = RG_COHERENCE_HIGH;
+    if (way == SIDE_BY_SIDE_WITH_FILTER) config.filter = is_opaque;
     rg_ray_views in = {.size = sizeof in};
     rg_hit_views out = {.size = sizeof out};
     memset(together, 0, sizeof together);
@@ -458,7 +470,7 @@ static rg_scene *nine_objects(const double at[3], rg_shape *shape, rg_object ids
 
 START_TEST(together_as_alone) {
     static rg_ray rays[RAYS];
-    uint32_t found = 0;
+    uint32_t found = 0, few_found = 0;
     make_surface(PLACES[0].centre, 1, 1, 0);
     for (int form = 0; form < FORMS; form++) {
         rg_shape *shape;
@@ -470,13 +482,20 @@ START_TEST(together_as_alone) {
                 fill_rays(rays, OFFSETS[n], round == 3);
                 if (round == 2) ck_assert_int_eq(rg_scene_set_mask(scene, ids[4], 1), RG_OK);
                 for (rg_cull cull = RG_CULL_NONE; cull <= RG_CULL_FRONT; cull++)
-                    demand_same_hits(scene, rays, cull, &found);
+                    demand_same_hits(scene, rays, cull, (way)((round + cull) % WAYS), &found);
             }
+            /* Few are gone through without the grid. */
+            for (int i = 0; i < 9; i++) {
+                if (i != 2 && i != 4) ck_assert_int_eq(rg_scene_remove(scene, ids[i]), RG_OK);
+            }
+            for (way way = IN_PACKETS; way < WAYS; way++)
+                demand_same_hits(scene, rays, RG_CULL_NONE, way, &few_found);
             ck_assert_int_eq(rg_scene_destroy(&scene), RG_OK);
         }
         rg_shape_release(&shape);
     }
     ck_assert_uint_gt(found, FORMS * 3 * 4 * 3 * RAYS / 3);
+    ck_assert_uint_gt(few_found, FORMS * 3 * 3 * RAYS / 3);
 }
 END_TEST
 
@@ -548,7 +567,7 @@ START_TEST(a_shape_in_place_of_another) {
         ck_assert(report.shape == small);
     }
     fill_rays(rays, OFFSETS[0], false);
-    demand_same_hits(scene, rays, RG_CULL_NONE, &found);
+    demand_same_hits(scene, rays, RG_CULL_NONE, IN_PACKETS, &found);
     ck_assert_int_eq(rg_shape_create_sphere(NULL, 1e100, &huge), RG_OK);
     rg_pose far_away = rg_pose_at(1e100, 0, 0);
     far_away.scale = 3.5;
