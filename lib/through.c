@@ -381,7 +381,7 @@ static __attribute__((noinline)) void through_alone(rgi_call *c, uint64_t index,
     finish_query(&q, invalid, failed);
 }
 
-/* A few rays, on a small stack. */
+/* A few rays, on a small stack: what is not inlined takes none of the others' room. */
 static __attribute__((noinline)) void through_one(rgi_call *c, uint64_t first, uint64_t last, uint64_t *invalid,
                                                   bool *failed) {
     course way;
@@ -395,8 +395,8 @@ static __attribute__((noinline)) void through_one(rgi_call *c, uint64_t first, u
     finish(&g, invalid, failed);
 }
 
-static uint64_t through_many(rgi_call *c, uint64_t first, uint64_t last, bool may_stop, uint64_t *invalid,
-                             bool *failed) {
+static __attribute__((noinline)) uint64_t through_many(rgi_call *c, uint64_t first, uint64_t last, bool may_stop,
+                                                       uint64_t *invalid, bool *failed) {
     course way;
     rgi_group groups[RGI_PACKETS];
     init(&way, groups, RGI_PACKETS, c, last - first);
