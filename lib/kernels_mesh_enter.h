@@ -126,13 +126,17 @@ RGI_INLINE void make_ready(const rgi_mesh_doors *door, const int s, rgi_mesh_pac
     }
 }
 
-/* rgi_beam_above, rgi_beam_below. */
+/* rgi_beam_above, rgi_beam_below: a t in the frame, kept finite; what may have been lost on the way there. */
+RGI_INLINE double frame_t(const rgi_packet *p, int i, double t, double *lost) {
+    double at = (t - p->shift[i]) * p->length[i];
+    *lost = 0x1p-50 * fabs(p->shift[i]) * p->length[i];
+    return rgi_min(rgi_max(at, -RGI_T_MOST), RGI_T_MOST);
+}
+
 static void bound_above(rgi_mesh_packet *m) {
     rgi_packet *p = &m->rays;
     LANES(i) {
-        double at = (m->t_max[i] - p->shift[i]) * p->length[i];
-        at = rgi_min(rgi_max(at, -RGI_T_MOST), RGI_T_MOST);
-        double lost = 0x1p-50 * fabs(p->shift[i]) * p->length[i];
+        double lost, at = frame_t(p, i, m->t_max[i], &lost);
         p->t_hi[i] = (float)(at + 0x1p-19 * fabs(at) + lost) + 4 * p->pad[i];
     }
 }
@@ -140,9 +144,7 @@ static void bound_above(rgi_mesh_packet *m) {
 static void bound_below(rgi_mesh_packet *m) {
     rgi_packet *p = &m->rays;
     LANES(i) {
-        double at = (m->t_min[i] - p->shift[i]) * p->length[i];
-        at = rgi_min(rgi_max(at, -RGI_T_MOST), RGI_T_MOST);
-        double lost = 0x1p-50 * fabs(p->shift[i]) * p->length[i];
+        double lost, at = frame_t(p, i, m->t_min[i], &lost);
         p->t_first[i] = (float)(at - 0x1p-19 * fabs(at) - lost) - 4 * p->pad[i];
     }
 }

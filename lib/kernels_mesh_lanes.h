@@ -81,7 +81,7 @@ static void cut_way(rgi_mesh_lanes *l, uint32_t lane) {
     l->depth[lane] = kept;
 }
 
-/* Returns after a hit with the rest of the way cut. */
+/* After a nearer hit the rest of the way is cut. */
 RGI_INLINE void visit_leaf_of(rgi_mesh_lanes *l, uint32_t lane, rgi_mesh_ref ref) {
     const uint32_t i = lane % RGI_PACKET;
     rgi_mesh_packet *m = &l->rows[lane / RGI_PACKET].inside;

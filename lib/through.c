@@ -320,6 +320,14 @@ static void go_through_few(rgi_group *groups, uint32_t count, course *way) {
     }
 }
 
+/* One group or two, by the way that pays. */
+static void go_on(rgi_group *groups, uint32_t count, course *way) {
+    if (way->few)
+        go_through_few(groups, count, way);
+    else
+        go_narrow(groups, count, way);
+}
+
 /* Writes what became of a ray. */
 static void finish_query(const rgi_query *q, uint64_t *invalid, bool *failed) {
     *invalid += !q->valid;
@@ -388,10 +396,7 @@ static __attribute__((noinline)) void through_one(rgi_call *c, uint64_t first, u
     rgi_group g;
     init(&way, &g, 1, c, last - first);
     next_rays(&g, &way, first, last);
-    if (way.few)
-        go_through_few(&g, 1, &way);
-    else
-        go_narrow(&g, 1, &way);
+    go_on(&g, 1, &way);
     finish(&g, invalid, failed);
 }
 
@@ -405,13 +410,7 @@ static __attribute__((noinline)) uint64_t through_many(rgi_call *c, uint64_t fir
         uint32_t count = 0, most = wide ? RGI_PACKETS : 2;
         while (count < most && first < last) first = next_rays(&groups[count++], &way, first, last);
         if (wide) go_wide(groups, count, &way);
-        for (uint32_t i = 0; i < count; i += 2) {
-            uint32_t pair = count - i < 2 ? 1 : 2;
-            if (way.few)
-                go_through_few(&groups[i], pair, &way);
-            else
-                go_narrow(&groups[i], pair, &way);
-        }
+        for (uint32_t i = 0; i < count; i += 2) go_on(&groups[i], count - i < 2 ? 1 : 2, &way);
         for (uint32_t i = 0; i < count; i++) finish(&groups[i], invalid, failed);
     } while (first < last && !(may_stop && rgi_lock_is_wanted(&c->scene->lock)));
     return first;

@@ -499,6 +499,45 @@ START_TEST(together_as_alone) {
 }
 END_TEST
 
+/* Objects of forty sizes around one point, all around it: rays there have more before them than a stack of
+ * theirs holds. And a mesh that counts as deeper than rays side by side have room for. */
+START_TEST(where_room_ends) {
+    enum { SIZES = 40 };
+    const double MIDDLE = 0.37;
+    static rg_ray rays[RAYS];
+    rg_scene *scene;
+    rg_shape *shape;
+    uint32_t found = 0;
+    make_surface(PLACES[0].centre, 1, 1, 0);
+    ck_assert_int_eq(rg_shape_create_mesh(NULL, views_of(FLOATS), &shape), RG_OK);
+    ck_assert_int_eq(rg_scene_create(NULL, &scene), RG_OK);
+    for (int i = 0; i < 26 * SIZES; i++) {
+        double far = ldexp(1, -(i / 26));
+        int place = i % 26 + (i % 26 >= 13); /* of 27, but for the middle */
+        rg_pose pose = rg_pose_at(MIDDLE + far * (place % 3 - 1), MIDDLE + far * (place / 3 % 3 - 1),
+                                  MIDDLE + far * (place / 9 - 1));
+        pose.scale = 0.4 * far;
+        ck_assert_int_eq(rg_scene_insert(scene, shape, &pose, NULL), RG_OK);
+    }
+    for (int i = 0; i < RAYS; i++) {
+        double eye[3], direction[3], near = ldexp(1, -(int)machine_below(SIZES));
+        for (int a = 0; a < 3; a++) {
+            eye[a] = 20 * (unit_random() - 0.5);
+            direction[a] = MIDDLE + near * (unit_random() - 0.5) - eye[a];
+        }
+        rays[i] = rg_ray_from(eye, direction);
+    }
+    const uint32_t levels = shape->of.mesh->levels;
+    for (int deep = 0; deep < 2; deep++) {
+        shape->of.mesh->levels = deep ? RGI_MESH_LEVELS + 1 : levels;
+        for (way way = IN_PACKETS; way < WAYS; way++) demand_same_hits(scene, rays, RG_CULL_NONE, way, &found);
+    }
+    ck_assert_uint_gt(found, 2 * WAYS * RAYS / 10);
+    ck_assert_int_eq(rg_scene_destroy(&scene), RG_OK);
+    rg_shape_release(&shape);
+}
+END_TEST
+
 /* From inside a closed mesh no ray at an edge or a vertex gets out, by whatever way it is asked. */
 START_TEST(nothing_leaks) {
     static rg_ray rays[RAYS];
@@ -595,6 +634,7 @@ Suite *unit_suite(void) {
     tcase_add_test(tests, new_vertices_that_do_not_fit_are_refused);
     tcase_add_test(tests, who_helps_changes_nothing);
     tcase_add_test(tests, together_as_alone);
+    tcase_add_test(tests, where_room_ends);
     tcase_add_test(tests, nothing_leaks);
     tcase_add_test(tests, a_shape_in_place_of_another);
     suite_add_tcase(suite, tests);
